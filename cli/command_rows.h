@@ -11,7 +11,11 @@ namespace hshfit::cli {
 
 using OptionTables = std::vector<std::span<const jobs::OptionRow>>;
 
+OptionTables compareRows();
+OptionTables convertRows();
 OptionTables exportRows();
+OptionTables fitRows();
 OptionTables projectRows();
+OptionTables reportRows();
 
 }  // namespace hshfit::cli

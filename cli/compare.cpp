@@ -1,6 +1,8 @@
 #include "command.h"
+#include "command_rows.h"
 #include "documents.h"
-#include "figure_options.h"
+#include "figure_lines.h"
+#include "job_options.h"
 #include "measured_numbers.h"
 
 #include <hshfit/brdf/transmission.h>
@@ -29,7 +31,7 @@ using Json = nlohmann::ordered_json;
 struct CompareArguments {
     std::string a, output;
     std::vector<std::string> others;
-    FigureArguments figures;
+    jobs::FigureArguments figures;
     jobs::CompareOptions options;
 };
 
@@ -49,7 +51,7 @@ Json answer(const jobs::Compared& compared, const CompareArguments& arguments) {
     if (!compared.files.empty())
         document["report"] = {{"folder", arguments.output}, {"files", compared.files}};
     if (!compared.figures.names.empty())
-        document["figures"] = figuresJson(compared.figures, arguments.figures.folder);
+        document["figures"] = figuresJson(compared.figures, arguments.figures.figures);
     return document;
 }
 
@@ -156,7 +158,7 @@ void compareMany(const CompareArguments& arguments, Globals& globals) {
 
 void runCompare(CompareArguments& arguments, Globals& globals) {
     arguments.options.figures = arguments.figures.parsed();
-    if (!arguments.options.sigma.empty() && arguments.figures.folder.empty())
+    if (!arguments.options.sigma.empty() && arguments.figures.figures.empty())
         throw UsageError("compare: --sigma is for the bars of figures; give --figures DIR");
     // Two specifications, neither of them a folder or a pattern, have an answer of their own.
     const bool many = arguments.others.size() > 1 || jobs::areMany({arguments.a}) ||
@@ -168,6 +170,10 @@ void runCompare(CompareArguments& arguments, Globals& globals) {
 
 }  // namespace
 
+OptionTables compareRows() {
+    return {jobs::compareOptions().rows, jobs::figureOptions().rows};
+}
+
 void addCompare(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<CompareArguments>();
     command
@@ -178,22 +184,12 @@ void addCompare(CLI::App& command, Globals& globals) {
         .add_option("B", arguments->others,
                     "Approximation: BRDF or coefficient file; several, a folder or a pattern")
         ->required();
-    command
-        .add_option("--metrics", arguments->options.metrics,
-                    "all, or names from hshfit list metrics")
-        ->capture_default_str();
-    command.add_option("--outgoing", arguments->options.outgoing,
-                       "WxH, N or THETA,PHI (default: those of the coefficient file; else 16, or "
-                       "16x16 if anisotropic)");
     command.add_option(
         "-o,--output", arguments->output,
         "Folder for a page with figures and spheres, made if absent; of several, for "
         "a table and a folder each");
-    addFigureOptions(command, arguments->figures);
-    command.add_option("--sigma", arguments->options.sigma,
-                       "Standard uncertainty of measured samples of A, for bars in the figures: "
-                       "2%+0.001, column, or FILE.csv");
-    addRgb(command, arguments->options.rgb);
+    addOptions(command, jobs::compareOptions(), arguments->options);
+    addOptions(command, jobs::figureOptions(), arguments->figures, "Figures for print");
     command.callback([arguments, &globals] { runCompare(*arguments, globals); });
 }
 

@@ -1,5 +1,7 @@
 #include "command.h"
+#include "command_rows.h"
 #include "documents.h"
+#include "job_options.h"
 
 #include <hshfit/accuracy/metrics.h>
 #include <hshfit/error.h>
@@ -162,9 +164,12 @@ void runConvert(const ConvertArguments& arguments, Globals& globals) {
 
 }  // namespace
 
+OptionTables convertRows() {
+    return {jobs::convertOptions().rows};
+}
+
 void addConvert(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<ConvertArguments>();
-    jobs::ConvertOptions& options = arguments->options;
     command
         .add_option("IN", arguments->input,
                     "BRDF, measured file or coefficient file; with -o also a folder of measured "
@@ -175,19 +180,7 @@ void addConvert(CLI::App& command, Globals& globals) {
     command.add_option("-o,--output", arguments->folder,
                        "Folder for the files of one or more IN, each named after its input; needs "
                        "--to");
-    command.add_option("--to", options.format,
-                       "Format and its options, NAME[:key=value,...] (default: by the extension); "
-                       "`hshfit help formats` lists them");
-    command.add_flag("--report-loss", options.measureLoss,
-                     "Read the file back and say what error it costs");
-    command.add_option("--outgoing", options.outgoing,
-                       "Outgoing directions of the loss: WxH, N or THETA,PHI");
-    command.add_option(
-        "--repair", options.repairs,
-        "Repairs before writing, separated by commas, or all; `hshfit help formats` lists "
-        "them");
-    addRgb(command, options.rgb);
-    command.add_flag("--force", options.force, "Replace an existing file");
+    addOptions(command, jobs::convertOptions(), arguments->options);
     command.callback([arguments, &globals] { runConvert(*arguments, globals); });
 }
 

@@ -1,9 +1,10 @@
 #include "command.h"
-#include "figure_options.h"
+#include "command_rows.h"
+#include "figure_lines.h"
 #include "fit_instrument.h"
 #include "fit_uncertainty.h"
+#include "job_options.h"
 #include "measured_numbers.h"
-#include "within.h"
 
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
@@ -30,7 +31,7 @@ using Json = nlohmann::ordered_json;
 struct FitArguments {
     std::string data, all, output;
     std::vector<std::string> models;  ///< to compare
-    FigureArguments figures;
+    jobs::FigureArguments figures;
     jobs::FitOptions options;
 };
 
@@ -214,13 +215,17 @@ void runFit(FitArguments& arguments, Globals& globals) {
         {"seconds", elapsed.count()},
         {"cpu_seconds", static_cast<double>(std::clock() - cpuStart) / CLOCKS_PER_SEC}};
     if (!fitted.figures.names.empty())
-        fitted.preset["figures"] = figuresJson(fitted.figures, arguments.figures.folder);
+        fitted.preset["figures"] = figuresJson(fitted.figures, arguments.figures.figures);
     if (!fitted.bands.is_null()) fitted.preset["bands"] = fitted.bands;
     if (fitted.poor) fitted.preset["poor"] = jobs::poorJson(*fitted.poor);
     printJson(fitted.preset);
 }
 
 }  // namespace
+
+OptionTables fitRows() {
+    return {jobs::fitOptions().rows, jobs::instrumentOptions().rows, jobs::figureOptions().rows};
+}
 
 void addFit(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<FitArguments>();
@@ -230,86 +235,13 @@ void addFit(CLI::App& command, Globals& globals) {
         "--all", arguments->all,
         "Fit every file of a folder; -o DIR takes one result each; what stands there and "
         "is valid is not fitted again");
-    command.add_option("--model", options.model,
-                       "MODEL[:key=value,...][+MODEL...]: what is given is not fitted");
-    command.add_option("--extensions", options.parts,
-                       "Of gltf-pbr and openpbr: auto (default) for the optional parts that "
-                       "held-out directions find worth it, none, all, or names with commas");
     command.add_option("--compare-models", arguments->models,
                        "Fit each of these models and rank them by held-out directions");
     command.add_option("-o,--output", arguments->output,
                        "Where the fit goes: a preset (.json), or a folder for a report as well");
-    command.add_option("--loss", options.loss,
-                       "picture (default for functions and tables), l2 (default with --sigma), "
-                       "cosine (default for scattered samples), log-relative (default for those "
-                       "that span more than two decades), log or cube-root");
-    command.add_option("--robust", options.robust, "none, huber or cauchy")->capture_default_str();
-    command
-        .add_option("--robust-scale", options.robustScale,
-                    "Residual at which it sets in; 0: from the residuals' spread")
-        ->check(within(jobs::bounds::robustScale));
-    command.add_flag("--per-channel", options.perChannel, "Shapes of their own for each channel");
-    command.add_option("--dispersion", options.dispersion,
-                       "Of spectra: PARAMETER=LAW[:N][,...], laws over the wavelength in place of "
-                       "a value at each; cauchy, sellmeier, poly, spline, shared or free");
-    command.add_option("--weights", options.weights, "auto, equal or solid-angle")
-        ->capture_default_str();
-    command
-        .add_option("--at", options.places,
-                    "Places of samples: auto, cells of a table, or nodes of the quadrature by "
-                    "which BRDFs are compared")
-        ->capture_default_str();
-    command
-        .add_option("--grazing-cut", options.grazingCut,
-                    "Leave out samples with a polar angle above this, degrees")
-        ->check(within(jobs::bounds::grazingCut));
-    command.add_option("--samples", options.samples, "Draw so many samples; 0: all");
-    command.add_option("--starts", options.starts, "Local searches")
-        ->check(within(jobs::bounds::starts))
-        ->capture_default_str();
-    command.add_option("--iterations", options.iterations, "At most so many in the last search")
-        ->check(within(jobs::bounds::iterations))
-        ->capture_default_str();
-    command.add_option("--seed", options.seed, "Of starts and drawn samples")
-        ->capture_default_str();
-    command.add_option("--sigma", options.sigma,
-                       "Standard uncertainty of a sample: 2%+0.001 (relative and absolute, in "
-                       "squares), column, or FILE.csv with a row for each sample; behind it "
-                       ",correlation:angle=3deg,wavelength=20nm or ,covariance=FILE where errors "
-                       "are correlated");
-    command.add_option("--calibration", options.calibration,
-                       "Relative standard uncertainty of a calibration common to all samples: "
-                       "0.8%");
-    command.add_option("--budget", options.budget,
-                       "JSON or CSV file of uncertainties common to all samples: name, on (scale, "
-                       "linearity, offset, dark, incidence, detector), half_width or "
-                       "standard_uncertainty, ...");
-    command.add_option("--scans", options.scans,
-                       "Samples with correlated errors: column, incidence, or so many after one "
-                       "another");
-    command
-        .add_option("--bootstrap", options.bootstrap,
-                    "Errors by so many fits to samples, or scans, drawn with replacement")
-        ->check(CLI::Range(2, 1000000));
-    command.add_flag("--profile", options.profile,
-                     "Intervals of 68 and 95 % by profile likelihood");
-    command.add_option("--residuals", options.residuals,
-                       "CSV file with a row for each value: model, residual, leverage, ...");
-    addFigureOptions(command, arguments->figures);
-    addInstrumentOptions(command, options.instrument);
-    command.add_option("--bands", options.bands,
-                       "Standard errors and bands of the fitted f at pairs of directions: a CSV "
-                       "with wi_x ... wo_z, or plane:30/60 for planes of incidence");
-    command.add_option("--bands-to", options.bandsTo, "CSV file for the bands");
-    command.add_option("--certificate", options.certificate,
-                       "PDF for a laboratory to sign: parameters, f and radiance factor with "
-                       "expanded uncertainties, budget, figures, hashes");
-    command.add_option("--certificate-fields", options.certificateFields,
-                       "JSON file of its texts: certificate, laboratory, date, client, sample, "
-                       "instrument, geometry, standard, traceability, conditions, method, "
-                       "remarks, operator, approved_by");
-    command.add_flag("--accept", options.accept, "Take a fit that did not converge");
-    addRgb(command, options.rgb);
+    addOptions(command, jobs::fitOptions(), options);
+    addOptions(command, jobs::instrumentOptions(), options.instrument, "Instrument");
+    addOptions(command, jobs::figureOptions(), arguments->figures, "Figures for print");
     command.callback([arguments, &globals] { runFit(*arguments, globals); });
 }
 

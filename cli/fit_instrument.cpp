@@ -1,45 +1,12 @@
 #include "fit_instrument.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 namespace hshfit::cli {
-
-void addInstrumentOptions(CLI::App& command, brdfs::InstrumentText& instrument) {
-    command.add_option("--source-aperture", instrument.source,
-                       "Directions of the source about the nominal one: cone:HALF or "
-                       "rectangle:HALFxHALF (along the polar angle, across), degrees");
-    command.add_option("--detector-aperture", instrument.detector,
-                       "Directions of the detector, likewise");
-    command
-        .add_option("--aperture-tolerance", instrument.tolerance,
-                    "Relative error of averages over apertures")
-        ->capture_default_str();
-    command.add_option("--bandwidth", instrument.bandwidth,
-                       "Slit of data with wavelengths: box:NM, triangle:NM or gauss:NM, full width "
-                       "at half maximum");
-    command.add_option("--offset", instrument.offset,
-                       "What the instrument adds to f, 1/sr: a number, or fit");
-    command.add_option(
-        "--dark", instrument.dark,
-        "The same over a cosine by which readings are divided: a number, or fit, with "
-        ":out (default), :in or :both");
-    command.add_option("--stray", instrument.stray,
-                       "Share of light that reaches the detector from all of the hemisphere: a "
-                       "number, or fit");
-    command.add_option("--scan-scale", instrument.scale,
-                       "A scale for each of the --scans: the standard deviation about 1 that is "
-                       "expected (2%), or fit, relative to the first");
-    command.add_option("--incidence-zero", instrument.incidenceZero,
-                       "The zero of the angle of incidence is fitted: its standard uncertainty in "
-                       "degrees, with :scan for one for each of the --scans (0.05:scan)");
-    command.add_option("--detector-zero", instrument.detectorZero,
-                       "The zero of the detector's angle, likewise");
-}
 
 std::string instrumentText(const brdfs::FitResult& result) {
     if (!result.instrument) return {};

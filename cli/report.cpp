@@ -1,6 +1,7 @@
 #include "command.h"
+#include "command_rows.h"
+#include "job_options.h"
 #include "measured_numbers.h"
-#include "within.h"
 
 #include <hshfit/error.h>
 #include <hshfit/files/output_rule.h>
@@ -19,7 +20,6 @@ namespace {
 struct ReportArguments {
     std::vector<std::string> specs;
     std::string output;
-    double maxEvaluations = static_cast<double>(jobs::ReportOptions{}.maxEvaluations);
     jobs::ReportOptions options;
 };
 
@@ -56,8 +56,7 @@ std::string summary(const ReportEntry& entry) {
     return text;
 }
 
-void runReport(ReportArguments& arguments, Globals& globals) {
-    arguments.options.maxEvaluations = static_cast<std::size_t>(arguments.maxEvaluations);
+void runReport(const ReportArguments& arguments, Globals& globals) {
     const jobs::Reported reported =
         jobs::report(arguments.specs, arguments.options, listenerFor(globals));
     const Report& report = reported.report;
@@ -89,27 +88,19 @@ void runReport(ReportArguments& arguments, Globals& globals) {
 
 }  // namespace
 
+OptionTables reportRows() {
+    return {jobs::reportOptions().rows};
+}
+
 void addReport(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<ReportArguments>();
-    jobs::ReportOptions& options = arguments->options;
     command
         .add_option("SPEC", arguments->specs,
                     "One or more BRDFs; of a folder, the measured files in it")
         ->required();
     command.add_option("-o,--output", arguments->output,
                        "Folder for pages and figures, made if absent; without it, the table alone");
-    command.add_option("--bases", options.bases, "all, or names from hshfit list bases")
-        ->capture_default_str();
-    command.add_option("--max-order", options.maxOrder, "Orders 1 to this one")
-        ->check(within(jobs::bounds::curveOrders))
-        ->capture_default_str();
-    command.add_option("--outgoing", options.outgoing,
-                       "WxH, N or THETA,PHI in degrees (default: 16, or 16x16 if anisotropic)");
-    command.add_flag("--wavelets", options.wavelets,
-                     "A curve of SOHO wavelets too: the best n^2 terms of each outgoing direction");
-    addRgb(command, options.rgb);
-    command.add_flag("--cosine", options.cosine, "Report f cos(theta_i) instead of f");
-    addQuadrature(command, options.tolerance, arguments->maxEvaluations);
+    addOptions(command, jobs::reportOptions(), arguments->options);
     command.callback([arguments, &globals] { runReport(*arguments, globals); });
 }
 

@@ -4,14 +4,10 @@
 #include "job_options.h"
 #include "topics.h"
 
-#include <hshfit/accuracy/metrics.h>
 #include <hshfit/irradiance/conventions.h>
 
-#include <brdfs/catalog.h>
 #include <brdfs/catalog/preset.h>
-#include <brdfs/fit/loss.h>
 #include <brdfs/presets/preset_collection.h>
-#include <brdfs/repair.h>
 #include <jobs/common/option_words.h>
 #include <jobs/lighting/lighting_models.h>
 #include <jobs/studies/choose_renderers.h>
@@ -25,42 +21,20 @@ namespace {
 
 using Words = std::vector<Word>;
 
+using jobs::basisLists;
 using jobs::basisWords;
 using jobs::formWords;
 using jobs::lightingWords;
+using jobs::lossWords;
+using jobs::metricLists;
+using jobs::metricWords;
+using jobs::modelWords;
 using jobs::precisionWords;
+using jobs::sigmaWords;
 using jobs::splitWords;
 using jobs::windowWords;
 using jobs::withAll;
 using jobs::wordsOf;
-
-Words basisLists() {
-    return withAll(basisWords());
-}
-
-Words metricWords() {
-    return wordsOf(metricCatalog());
-}
-
-Words metricLists() {
-    return withAll(metricWords());
-}
-
-Words modelWords() {
-    return wordsOf(brdfs::models());
-}
-
-Words writerWords() {
-    return wordsOf(brdfs::writers());
-}
-
-Words repairWords() {
-    return withAll(wordsOf(brdfs::repairs()));
-}
-
-Words lossWords() {
-    return wordsOf(brdfs::losses());
-}
 
 Words rendererWords() {
     return wordsOf(jobs::renderers());
@@ -103,51 +77,8 @@ Words constraintWords() {
     return {{"none"}, {"non-negative"}, {"energy-preserving"}, {"both"}};
 }
 
-Words placeWords() {
-    return {{"auto"}, {"cells"}, {"nodes"}};
-}
-
-Words robustWords() {
-    return {{"none"}, {"huber"}, {"cauchy"}};
-}
-
-Words weightWords() {
-    return {{"auto"}, {"equal"}, {"solid-angle"}};
-}
-
 Words rotationWords() {
     return {{"exact"}, {"through-sh"}, {"table"}, {"paper-shift"}};
-}
-
-Words figureAxisWords() {
-    return {{"auto"}, {"linear"}, {"log"}};
-}
-
-Words figureWidthWords() {
-    return {{"column", "84 mm"}, {"page", "174 mm"}};
-}
-
-Words panelWords() {
-    return {{"auto", "at most six"}, {"all"}};
-}
-
-Words scanWords() {
-    return {{"column", "of the file, or of that of the uncertainties"},
-            {"incidence", "samples of one incident direction"}};
-}
-
-Words fitWords() {
-    return {{"fit", "found by the fit"}};
-}
-
-Words darkWords() {
-    return {{"fit", "found by the fit, over the cosine of the outgoing direction"},
-            {"fit:in", "of the incident direction"},
-            {"fit:both", "of both"}};
-}
-
-Words sigmaWords() {
-    return {{"column", "of the file"}};
 }
 
 // A row for one command stands before the row for all.
@@ -160,27 +91,12 @@ constexpr ValueRow valueRows[] = {
     {"choose", "--kinds", {kindWords, Syntax::list}},
     {"choose", "--output", {nullptr, Syntax::word, Files::folder}},
     {"compare", "--output", {nullptr, Syntax::word, Files::folder}},
-    {"compare", "--sigma", {sigmaWords, Syntax::word, Files::read, ".csv"}},
     {"convert", "--output", {nullptr, Syntax::word, Files::folder}},
     {"convert", "MORE", {nullptr, Syntax::brdf, Files::read}},
     {"completion", "--output", {nullptr, Syntax::word, Files::written, ""}},
     {"eval", "--output", {nullptr, Syntax::word, Files::written, ".csv"}},
     {"export", "--output", {nullptr, Syntax::word, Files::folder}},
     {"fit", "--all", {nullptr, Syntax::word, Files::readFolder}},
-    {"fit", "--at", {placeWords}},
-    {"fit", "--dark", {darkWords}},
-    {"fit", "--offset", {fitWords}},
-    {"fit", "--bands", {nullptr, Syntax::word, Files::read, ".csv"}},
-    {"fit", "--bands-to", {nullptr, Syntax::word, Files::written, ".csv"}},
-    {"fit", "--budget", {nullptr, Syntax::word, Files::read, ""}},
-    {"fit", "--certificate", {nullptr, Syntax::word, Files::written, ".pdf"}},
-    {"fit", "--certificate-fields", {nullptr, Syntax::word, Files::read, ".json"}},
-    {"fit", "--residuals", {nullptr, Syntax::word, Files::written, ".csv"}},
-    {"fit", "--scan-scale", {fitWords}},
-    {"fit", "--scans", {scanWords}},
-    {"fit", "--sigma", {sigmaWords, Syntax::word, Files::read, ".csv"}},
-    {"fit", "--stray", {fitWords}},
-    {"fit", "--weights", {weightWords}},
     {"help", "WORD", {helpWords}},
     {"illuminate", "--output", {nullptr, Syntax::word, Files::folder}},
     {"import", "FILE", {nullptr, Syntax::word, Files::read, ""}},
@@ -192,7 +108,7 @@ constexpr ValueRow valueRows[] = {
     {"library", "--bands-to", {nullptr, Syntax::word, Files::written, ".csv"}},
     {"library", "--library", {nullptr, Syntax::word, Files::read, ""}},
     {"library", "--output", {nullptr, Syntax::word, Files::written, ".library"}},
-    {"library", "--sigma", {sigmaWords, Syntax::word, Files::read, ".csv"}},
+    {"library", "--sigma", jobs::sigmaValues},
     {"library", "INPUT", {nullptr, Syntax::brdf, Files::read, ""}},
     {"light", "SPEC", {nullptr, Syntax::light, Files::read, ""}},
     {"list", "TEXT", {presetWords}},
@@ -213,16 +129,11 @@ constexpr ValueRow valueRows[] = {
     {"tradeoff", "--halfway"},
     {"transfer", "--material", {nullptr, Syntax::brdf, Files::read}},
     {"transfer", "--output", {nullptr, Syntax::word, Files::folder}},
-    {"", "--axis", {figureAxisWords}},
     {"", "--basis", {basisWords}},
     {"", "--bases", {basisLists, Syntax::list}},
     {"", "--compare-models", {modelWords, Syntax::sum}},
     {"", "--constraints", {constraintWords, Syntax::list}},
     {"", "--convention", {conventionWords}},
-    {"", "--figure-width", {figureWidthWords}},
-    {"", "--figures", {nullptr, Syntax::word, Files::folder}},
-    {"", "--font"},
-    {"", "--font-size"},
     {"", "--forms", {formWords, Syntax::list}},
     {"", "--light", {nullptr, Syntax::light, Files::read, ""}},
     {"", "--lighting", {lightingWords, Syntax::list}},
@@ -233,15 +144,11 @@ constexpr ValueRow valueRows[] = {
     {"", "--model", {modelWords, Syntax::sum}},
     {"", "--output", {nullptr, Syntax::word, Files::written, ".json"}},
     {"", "--pairs", {nullptr, Syntax::word, Files::read, ""}},
-    {"", "--panels", {panelWords}},
     {"", "--precisions", {precisionWords, Syntax::list}},
     {"", "--records", {nullptr, Syntax::word, Files::added}},
     {"", "--reference", {nullptr, Syntax::word, Files::read, ""}},
-    {"", "--repair", {repairWords, Syntax::list}},
-    {"", "--robust", {robustWords}},
     {"", "--source", {nullptr, Syntax::brdf, Files::read, ""}},
     {"", "--split", {splitWords, Syntax::brdf, Files::read, ""}},
-    {"", "--to", {writerWords}},
     {"", "--window", {windowWords}},
     {"", "--windows", {windowWords, Syntax::list}},
     {"", "--write-pairs", {nullptr, Syntax::word, Files::written, ".csv"}},

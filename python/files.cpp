@@ -50,15 +50,12 @@ py::object readFile(const py::object& path) {
     return py::cast(std::make_shared<Representation>(std::move(*form)));
 }
 
-py::dict converted(const py::object& input, const py::object& output, const std::string& format,
-                   const std::string& repairs, const py::object& outgoing, bool measureLoss,
-                   bool rgb, bool force, const py::object& progress) {
-    const jobs::ConvertOptions options{.format = format,
-                                       .repairs = repairs,
-                                       .outgoing = outgoingText(outgoing),
-                                       .rgb = rgb,
-                                       .measureLoss = measureLoss,
-                                       .force = force};
+py::dict converted(const py::object& input, const py::object& output, const py::kwargs& keywords) {
+    jobs::ConvertOptions options;
+    Keywords given(keywords);
+    given.set(boundOptions(jobs::convertOptions(), options));
+    const py::object progress = given.take("progress");
+    given.finish();
     const std::string from = pathOf(input, "input"), to = pathOf(output, "output");
     jobs::Converted done;
     watched(progress, {}, [&](const jobs::Listener& listener) {
@@ -179,19 +176,13 @@ py::dict sampled(const py::object& spec, const py::object& outgoing, std::size_t
 
 void bindExport(py::module_& module) {
     jobs::ExportOptions options;
-    {
-        py::options signatures;
-        signatures.disable_function_signatures();
-        module.def(
-            "export", exported, py::arg("coefficients"), py::arg("folder"),
-            documented("export", "coefficients: Path, folder: Path", optionsOf(options), "Row",
-                       R"(Export a coefficient file to a folder: textures, shaders, a viewer.
+    define(module,
+           {"export", "coefficients: Path, folder: Path", optionsOf(options), "Row",
+            R"(Export a coefficient file to a folder: textures, shaders, a viewer.
 
 Returns a dict: "files" (role, target, path), "fit_error" against the source, "poor". All files are
-written, or none.
-)")
-                .c_str());
-    }
+written, or none.)"},
+           exported, py::arg("coefficients"), py::arg("folder"));
     module.def("import_coefficients", imported, py::arg("input"), py::arg("output"), py::kw_only(),
                py::arg("force") = false,
                "Write the coefficients of a file of an export to .json or .exr.");
@@ -204,14 +195,13 @@ void bindFiles(py::module_& module) {
         "read", readFile, py::arg("path"),
         R"(Read a file by its content: Coefficients, a Form, Light, or, for everything else that
 open() takes, a Brdf. Raises InputError that names the file and the field.)");
-    const jobs::ConvertOptions options;
-    module.def("convert", converted, py::arg("input"), py::arg("output"), py::kw_only(),
-               py::arg("format") = options.format, py::arg("repairs") = options.repairs,
-               py::arg("outgoing") = py::none(), py::arg("measure_loss") = options.measureLoss,
-               py::arg("rgb") = options.rgb, py::arg("force") = options.force,
-               py::arg("progress") = py::none(),
-               R"(Write the BRDF of a specification or path in the format of other programs
-(catalog("writers")). repairs: "all" or names with commas. Returns a dict as Brdf.write() does.)");
+    jobs::ConvertOptions options;
+    define(module,
+           {"convert", "input: Path, output: Path", boundOptions(jobs::convertOptions(), options),
+            "Row",
+            R"(Write the BRDF of a specification or path in the format of other programs
+(catalog("writers")). Returns a dict as Brdf.write() does.)"},
+           converted, py::arg("input"), py::arg("output"));
     bindExport(module);
     module.def("describe", described, py::arg("spec"), py::kw_only(), py::arg("rgb") = false,
                py::arg("progress") = py::none(),

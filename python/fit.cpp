@@ -1,6 +1,6 @@
 #include "answers.h"
 #include "arrays.h"
-#include "figure_arguments.h"
+#include "job_options.h"
 #include "watched.h"
 
 #include <hshfit/error.h>
@@ -101,105 +101,38 @@ py::dict predicted(const jobs::Fitted& fitted, const py::object& wi, const py::o
     return answer;
 }
 
+/// The options of fit(), but for the model and the instrument, which are arguments by themselves.
+Options optionsOf(jobs::FitOptions& options, jobs::FigureArguments& figures) {
+    return joined({without(boundOptions(jobs::fitOptions(), options), {"model"}),
+                   boundOptions(jobs::figureOptions(), figures)});
+}
+
 /// The instrument of a dict whose keys are the program's options with underscores.
-brdfs::InstrumentText instrumentFrom(const py::dict& given) {
-    using Text = brdfs::InstrumentText;
-    constexpr std::pair<const char*, std::string Text::*> keys[] = {
-        {"source_aperture", &Text::source},
-        {"detector_aperture", &Text::detector},
-        {"bandwidth", &Text::bandwidth},
-        {"offset", &Text::offset},
-        {"dark", &Text::dark},
-        {"stray", &Text::stray},
-        {"scan_scale", &Text::scale},
-        {"incidence_zero", &Text::incidenceZero},
-        {"detector_zero", &Text::detectorZero}};
-    Text text;
-    for (const auto& [name, value] : given) {
-        const auto key = py::str(name).cast<std::string>();
-        const auto* row = std::ranges::find_if(keys, [&](const auto& k) { return key == k.first; });
-        if (row != std::end(keys))
-            text.*(row->second) = py::str(value).cast<std::string>();
-        else if (key == "aperture_tolerance")
-            text.tolerance = value.cast<double>();
-        else
-            throw UsageError(
-                fmt::format("instrument: '{}' is none of source_aperture, detector_aperture, "
-                            "aperture_tolerance, bandwidth, offset, dark, stray, scan_scale, "
-                            "incidence_zero, detector_zero",
-                            key));
-    }
+brdfs::InstrumentText instrumentFrom(const py::object& given) {
+    brdfs::InstrumentText text;
+    if (given.is_none()) return text;
+    const Options options = boundOptions(jobs::instrumentOptions(), text);
+    Keywords keys{py::dict(given)};
+    keys.set(options);
+    keys.finish("instrument", options);
     return text;
 }
 
-jobs::FitOptions optionsFrom(const std::string& model, const std::string& loss,
-                             const std::string& robust, double robustScale,
-                             const std::string& weights, bool perChannel, double grazingCut,
-                             std::size_t samples, int starts, int iterations, std::uint64_t seed,
-                             bool accept, const py::object& parts) {
-    requireWithin("starts", starts, jobs::bounds::starts);
-    requireWithin("iterations", iterations, jobs::bounds::iterations);
-    requireWithin("grazing_cut", grazingCut, jobs::bounds::grazingCut);
-    requireWithin("robust_scale", robustScale, jobs::bounds::robustScale);
-    jobs::FitOptions options;
-    options.model = model;
-    options.loss = loss;
-    options.robust = robust;
-    options.robustScale = robustScale;
-    options.weights = weights;
-    options.perChannel = perChannel;
-    options.grazingCut = grazingCut;
-    options.samples = samples;
-    options.starts = starts;
-    options.iterations = iterations;
-    options.seed = seed;
-    options.accept = accept;
-    if (!parts.is_none()) options.parts = listText(parts);
-    return options;
-}
-
-std::shared_ptr<jobs::Fitted> fitted(
-    const py::object& data, const std::string& model, const std::string& loss,
-    const std::string& robust, double robustScale, const std::string& weights, bool perChannel,
-    double grazingCut, std::size_t samples, int starts, int iterations, std::uint64_t seed,
-    bool accept, const py::object& parts, bool rgb, const std::string& places,
-    const std::string& dispersion, const std::string& sigma, const std::string& calibration,
-    const py::object& budget, const py::object& scans, std::size_t bootstrap, bool profile,
-    const py::object& residuals, const py::dict& instrument, const py::object& bands,
-    const py::object& bandsTo, const py::object& figures, const std::string& width,
-    const std::string& font, double fontSize, const std::string& axis, const std::string& panels,
-    const py::object& certificate, const py::object& certificateFields,
-    const py::object& progress) {
-    jobs::FitOptions options =
-        optionsFrom(model, loss, robust, robustScale, weights, perChannel, grazingCut, samples,
-                    starts, iterations, seed, accept, parts);
-    if (bootstrap != 0) requireWithin("bootstrap", static_cast<double>(bootstrap), 2, 1e6);
-    if (bands.is_none() && !bandsTo.is_none())
+std::shared_ptr<jobs::Fitted> fitted(const py::object& data, const std::string& model,
+                                     const py::kwargs& keywords) {
+    jobs::FitOptions options{.model = model};
+    jobs::FigureArguments figures;
+    Keywords given(keywords);
+    given.set(optionsOf(options, figures));
+    options.instrument = instrumentFrom(given.take("instrument"));
+    const py::object progress = given.take("progress");
+    given.finish();
+    if (options.bands.empty() && !options.bandsTo.empty())
         throw UsageError("bands_to is the file of bands; give bands, their pairs, too");
-    if (certificate.is_none() && !certificateFields.is_none())
+    if (options.certificate.empty() && !options.certificateFields.empty())
         throw UsageError("certificate_fields is for certificate='OUT.pdf'");
-    const auto fileOrNone = [](const py::object& path, const char* name) {
-        std::string text = path.is_none() ? std::string() : pathOf(path, name);
-        if (text.empty() && !path.is_none())
-            throw UsageError(fmt::format("{}: an empty path; valid: None or a name", name));
-        return text;
-    };
-    options.places = places;
-    options.dispersion = dispersion;
-    options.sigma = sigma;
-    options.calibration = calibration;
-    options.budget = fileOrNone(budget, "budget");
-    options.scans = scans.is_none() ? "" : py::str(scans).cast<std::string>();
-    options.bootstrap = bootstrap;
-    options.profile = profile;
-    options.residuals = fileOrNone(residuals, "residuals");
-    options.instrument = instrumentFrom(instrument);
-    options.bands = fileOrNone(bands, "bands");
-    options.bandsTo = fileOrNone(bandsTo, "bands_to");
-    options.certificate = fileOrNone(certificate, "certificate");
-    options.certificateFields = fileOrNone(certificateFields, "certificate_fields");
-    options.figures = figuresFrom(figures, width, font, fontSize, axis, panels);
-    Source source(data, rgb, "data");
+    options.figures = figures.parsed();
+    Source source(data, options.rgb, "data");
     std::shared_ptr<jobs::Fitted> result;
     Source* const sources[] = {&source};
     watched(progress, sources, [&](const jobs::Listener& listener) {
@@ -209,19 +142,23 @@ std::shared_ptr<jobs::Fitted> fitted(
     return result;
 }
 
+/// The options of fit() that a ranking of models takes.
+Options rankOptions(jobs::FitOptions& options) {
+    return only(boundOptions(jobs::fitOptions(), options),
+                {"loss", "starts", "samples", "seed", "rgb"});
+}
+
 py::list ranked(const py::object& data, const std::vector<std::string>& models,
-                const std::string& loss, int starts, std::size_t samples, std::uint64_t seed,
-                bool rgb) {
-    requireWithin("starts", starts, jobs::bounds::starts);
+                const py::kwargs& keywords) {
     jobs::FitOptions options;
-    options.loss = loss;
-    options.starts = starts;
-    options.samples = samples;
-    options.seed = seed;
-    Source source(data, rgb, "data");
+    Keywords given(keywords);
+    given.set(rankOptions(options));
+    const py::object progress = given.take("progress");
+    given.finish();
+    Source source(data, options.rgb, "data");
     std::vector<brdfs::ModelRank> ranks;
     Source* const sources[] = {&source};
-    watched(py::none(), sources, [&](const jobs::Listener&) {
+    watched(progress, sources, [&](const jobs::Listener&) {
         ranks = jobs::rankModels(source.brdf(), models, options).models;
     });
     py::list rows;
@@ -329,60 +266,29 @@ addition.)")
 
 void bindFit(py::module_& module) {
     bindResult(module);
-    const jobs::FitOptions options;
-    module.def(
-        "fit", fitted, py::arg("data"), py::arg("model"), py::kw_only(),
-        py::arg("loss") = options.loss, py::arg("robust") = options.robust,
-        py::arg("robust_scale") = options.robustScale, py::arg("weights") = options.weights,
-        py::arg("per_channel") = options.perChannel, py::arg("grazing_cut") = options.grazingCut,
-        py::arg("samples") = options.samples, py::arg("starts") = options.starts,
-        py::arg("iterations") = options.iterations, py::arg("seed") = options.seed,
-        py::arg("accept") = options.accept, py::arg("parts") = py::none(),
-        py::arg("rgb") = options.rgb, py::arg("at") = options.places,
-        py::arg("dispersion") = options.dispersion, py::arg("sigma") = options.sigma,
-        py::arg("calibration") = options.calibration, py::arg("budget") = py::none(),
-        py::arg("scans") = py::none(), py::arg("bootstrap") = options.bootstrap,
-        py::arg("profile") = options.profile, py::arg("residuals") = py::none(),
-        py::arg("instrument") = py::dict(), py::arg("bands") = py::none(),
-        py::arg("bands_to") = py::none(), py::arg("figures") = py::none(),
-        py::arg("figure_width") = figureWidth, py::arg("font") = std::string(defaultFigureFont),
-        py::arg("font_size") = FigureStyle{}.fontSize, py::arg("axis") = figureAxis,
-        py::arg("panels") = jobs::FigureOptions{}.panels, py::arg("certificate") = py::none(),
-        py::arg("certificate_fields") = py::none(), py::arg("progress") = py::none(),
-        R"(Fit a model to a Brdf, or to a specification or path.
+    jobs::FitOptions options;
+    jobs::FigureArguments figures;
+    define(module,
+           {"fit",
+            "data: BrdfLike, model: str",
+            optionsOf(options, figures),
+            "Fit",
+            R"(Fit a model to a Brdf, or to a specification or path.
 
-model     "MODEL[:key=value,...][+MODEL...]": parameters with a value are held fixed
-loss      "picture" (default for functions and tables), "l2", "cosine" (default for scattered
-          samples), "log", "cube-root" or "log-relative"
-robust    "none", "huber" or "cauchy", from `robust_scale` on (0: from the residuals' spread)
-weights   "auto", "equal" or "solid-angle"
-samples   to draw; 0: all
-starts, iterations, seed  of the search
-accept    take a fit that did not converge, which raises NumericError otherwise
-parts     of models with optional parts: "auto", "none", "all" or names
-at        places of samples: "auto", "cells" or "nodes"
-dispersion  of spectra: "PARAMETER=LAW[:N],..." with cauchy, sellmeier, poly, spline, shared, free
-sigma     standard uncertainty of samples: "2%+0.001", "column" or a CSV, and behind it correlations
-          (",correlation:angle=3deg", ",covariance=FILE"); scans: samples with correlated errors
-calibration, budget  what is common to all samples: "0.8%"; a JSON or CSV file of contributions
-bootstrap, profile  errors by so many resampled fits; intervals by profile likelihood
-instrument  between f and samples: {"source_aperture": "cone:2", "bandwidth": "gauss:5", "offset":
-          "fit", ...} with detector_aperture, aperture_tolerance, dark, stray, scan_scale,
-          incidence_zero, detector_zero
-bands     pairs for errors of f: "plane:30/60" (degrees) or a CSV; bands_to, residuals: CSV files
-figures   a folder for PDF and SVG, of figure_width ("column", "page", "120mm"), font, font_size
-          (points), axis ("auto", "linear", "log") and panels
-certificate  a PDF for a laboratory to sign; certificate_fields: a JSON file of its texts
-
-Returns a Fit. The same numbers as by the command fit.)");
-    module.def(
-        "rank_models", ranked, py::arg("data"), py::arg("models"), py::kw_only(),
-        py::arg("loss") = options.loss, py::arg("starts") = options.starts,
-        py::arg("samples") = options.samples, py::arg("seed") = options.seed,
-        py::arg("rgb") = options.rgb,
-        R"(Fit every model to the same data and rank them by the error at held-out directions: a
+model: "MODEL[:key=value,...][+MODEL...]": parameters with a value are held fixed. instrument: what
+stands between f and the samples, {"source_aperture": "cone:2", "bandwidth": "gauss:5", "offset":
+"fit", ...} with detector_aperture, aperture_tolerance, dark, stray, scan_scale, incidence_zero and
+detector_zero. Returns a Fit: the same numbers as by the command fit. A fit that did not converge
+raises NumericError, unless it is accepted.)",
+            {{"instrument", "Optional[Mapping[str, Any]]"}}},
+           fitted, py::arg("data"), py::arg("model"));
+    define(
+        module,
+        {"rank_models", "data: BrdfLike, models: Sequence[str]", rankOptions(options), "List[Row]",
+         R"(Fit every model to the same data and rank them by the error at held-out directions: a
 list of dicts with "model", "spec", "held_out_rms", "rms", "aic", "bic", "converged" and
-"failure".)");
+"failure".)"},
+        ranked, py::arg("data"), py::arg("models"));
 }
 
 }  // namespace hshfit::python

@@ -7,8 +7,10 @@
 #include <hshfit/spelling.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <optional>
 #include <regex>
 #include <type_traits>
@@ -52,6 +54,8 @@ struct Setter {
     }
     void operator()(std::string* value) const {
         *value = textOf(given);
+        if (row.values.files != jobs::Files::none && value->empty() && !given.is_none())
+            throw UsageError(fmt::format("{}: an empty path; valid: None or a name", keyword));
         if (!row.values.complete) return;
         std::vector<std::string> known;
         for (const jobs::Word& word : row.values.words()) known.push_back(word.text);
@@ -104,7 +108,9 @@ struct Stater {
             default:
                 break;
         }
-        return stated(row.values.files == jobs::Files::none ? "str" : "Path", py::str(*value));
+        if (row.values.files == jobs::Files::none) return stated("str", py::str(*value));
+        return stated("Optional[Path]",
+                      value->empty() ? py::object(py::none()) : py::object(py::str(*value)));
     }
     std::string operator()(const jobs::Spelled& value) const {
         return stated("str", py::str(value.word(value.at)));
@@ -129,6 +135,26 @@ std::string withKeywords(std::string_view help) {
 
 }  // namespace
 
+Options joined(std::initializer_list<Options> parts) {
+    Options all;
+    for (const Options& part : parts) all.insert(all.end(), part.begin(), part.end());
+    return all;
+}
+
+Options without(Options options, std::initializer_list<std::string_view> names) {
+    std::erase_if(options, [&](const jobs::BoundOption& option) {
+        return std::ranges::find(names, option.row->name) != names.end();
+    });
+    return options;
+}
+
+Options only(Options options, std::initializer_list<std::string_view> names) {
+    std::erase_if(options, [&](const jobs::BoundOption& option) {
+        return std::ranges::find(names, option.row->name) == names.end();
+    });
+    return options;
+}
+
 void Keywords::set(const Options& options) {
     for (const jobs::BoundOption& option : options) {
         const std::string keyword = keywordOf(*option.row);
@@ -142,24 +168,33 @@ py::object Keywords::take(const char* name) {
     return left_.attr("pop")(name, py::none());
 }
 
+void Keywords::finish(std::string_view name, const Options& options) const {
+    std::vector<std::string> known;
+    for (const jobs::BoundOption& option : options) known.push_back(keywordOf(*option.row));
+    for (const auto& [key, value] : left_)
+        throw UsageError(fmt::format("{}: '{}' is none of {}", name,
+                                     py::str(key).cast<std::string>(), fmt::join(known, ", ")));
+}
+
 void Keywords::finish() const {
     for (const auto& [name, value] : left_)
         refuseType(fmt::format("no argument {}", py::str(name).cast<std::string>()));
 }
 
-std::string documented(std::string_view function, std::string_view before, const Options& options,
-                       std::string_view result, std::string_view text) {
-    std::string signature = fmt::format("{}({}, *", function, before), lines;
-    for (const jobs::BoundOption& option : options) {
+std::string docstring(const OptionFunction& function) {
+    std::string signature = fmt::format("{}({}, *", function.name, function.before), lines;
+    for (const jobs::BoundOption& option : function.options) {
         const std::string keyword = keywordOf(*option.row);
         signature +=
             fmt::format(", {}: {}", keyword, std::visit(Stater{*option.row}, option.value));
         lines += fmt::format("\n{:<11} {}", keyword, withKeywords(option.row->help));
     }
+    for (const auto& [name, type] : function.others)
+        signature += fmt::format(", {}: {} = None", name, type);
     return fmt::format(
         "{}, progress: Progress = None) -> {}\n\n{}\n{}\nprogress    called as progress(part, "
         "done, total) from this thread; an exception from it stops",
-        signature, result, text, lines);
+        signature, function.result, function.text, lines);
 }
 
 }  // namespace hshfit::python

@@ -6,19 +6,26 @@
 
 #include <jobs/common/option_row.h>
 
+#include <initializer_list>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace hshfit::python {
 
 using Options = std::vector<jobs::BoundOption>;
 
+/// Options of several structs.
+Options joined(std::initializer_list<Options> parts);
+/// Without those of the names given, or with those alone.
+Options without(Options options, std::initializer_list<std::string_view> names);
+Options only(Options options, std::initializer_list<std::string_view> names);
+
 /// The keyword arguments of one call of a function.
 class Keywords {
 public:
-    /// The last argument of every function is `progress`.
-    explicit Keywords(const py::kwargs& given) : left_(py::dict(given)) {}
+    explicit Keywords(const py::dict& given) : left_(given.attr("copy")()) {}
 
     /// Sets the options that are given. Throws UsageError for a value out of its range, and
     /// TypeError for one of another type.
@@ -27,14 +34,33 @@ public:
     py::object take(const char* name);
     /// Throws TypeError if there are arguments that nobody took.
     void finish() const;
+    /// The same of a dict called `name` whose keys are those options: throws UsageError.
+    void finish(std::string_view name, const Options& options) const;
 
 private:
     py::dict left_;
 };
 
-/// The docstring: a signature as pybind11 writes it, with the defaults that the options have, the
-/// text, and a line for each option. `before`: arguments by place, as "brdf: object".
-std::string documented(std::string_view function, std::string_view before, const Options& options,
-                       std::string_view result, std::string_view text);
+/// A function whose arguments behind those by place are options, and `progress`.
+struct OptionFunction {
+    const char* name;
+    std::string before;  ///< arguments by place, "brdf: BrdfLike"
+    Options options;     ///< with their defaults
+    std::string result;  ///< "Projection"
+    std::string text;    ///< the beginning of the docstring
+    /// Further arguments that are None where they are not given, with their types.
+    std::vector<std::pair<std::string, std::string>> others = {};
+};
+/// The docstring: a signature as pybind11 writes it, the text, and a line for each option.
+std::string docstring(const OptionFunction& function);
+
+/// Defines it in the module; `arguments` are py::arg by place. The function takes py::kwargs last.
+template <class Function, class... Arguments>
+void define(py::module_& module, const OptionFunction& function, Function call,
+            const Arguments&... arguments) {
+    py::options signatures;
+    signatures.disable_function_signatures();
+    module.def(function.name, call, arguments..., docstring(function).c_str());
+}
 
 }  // namespace hshfit::python

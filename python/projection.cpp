@@ -44,10 +44,8 @@ Result resultOf(jobs::Projected projected) {
 }
 
 Options optionsOf(jobs::ProjectOptions& options) {
-    Options all = boundOptions(jobs::projectOptions(), options);
-    const Options form = boundOptions(jobs::formOptions(), options.form);
-    all.insert(all.end(), form.begin(), form.end());
-    return all;
+    return joined({boundOptions(jobs::projectOptions(), options),
+                   boundOptions(jobs::formOptions(), options.form)});
 }
 
 std::shared_ptr<Result> projected(const py::object& brdf, const py::kwargs& keywords) {
@@ -170,22 +168,17 @@ void bindResult(py::module_& module) {
 
 void bindProject(py::module_& module) {
     jobs::ProjectOptions options;
-    {
-        py::options signatures;
-        signatures.disable_function_signatures();
-        module.def("project", projected, py::arg("brdf"),
-                   documented("project", "brdf: BrdfLike", optionsOf(options), "Projection",
-                              R"(Project a BRDF over wi onto a basis, for every outgoing direction.
+    define(module,
+           {"project", "brdf: BrdfLike", optionsOf(options), "Projection",
+            R"(Project a BRDF over wi onto a basis, for every outgoing direction.
 
     c_{l,m}(wo) = integral of q(wi, wo) B_{l,m}(wi) d omega_i   (Gautron et al. 2004, Eq. 17)
 
 brdf: a Brdf, or a specification or path as for open(). outgoing: "32x32", 16 (elevations) or
 (theta, phi) in degrees. form and the arguments behind it ask for a compressed form. Returns a
 Projection: the same numbers as by the command project. Raises NumericError where the coefficients
-do not exist or do not converge.
-)")
-                       .c_str());
-    }
+do not exist or do not converge.)"},
+           projected, py::arg("brdf"));
     module.def(
         "project_all", projectedAll, py::arg("brdf"), py::kw_only(), py::arg("bases") = "all",
         py::arg("order") = options.order, py::arg("outgoing") = py::none(),

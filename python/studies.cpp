@@ -1,6 +1,6 @@
 #include "answers.h"
 #include "arrays.h"
-#include "figure_arguments.h"
+#include "job_options.h"
 #include "watched.h"
 
 #include <hshfit/error.h>
@@ -38,21 +38,13 @@ py::object firstOf(const ReportCurve& curve, double accuracy) {
     return py::cast(std::pair(point->order, point->coefficients));
 }
 
-std::shared_ptr<Report> curvesOf(const py::object& brdf, const py::object& bases, int maxOrder,
-                                 const py::object& outgoing, bool cosine, bool rgb, bool wavelets,
-                                 double tolerance, double maxEvaluations,
-                                 const py::object& progress) {
-    requireQuadrature(tolerance, maxEvaluations);
-    requireWithin("max_order", maxOrder, jobs::bounds::curveOrders);
+std::shared_ptr<Report> curvesOf(const py::object& brdf, const py::kwargs& keywords) {
     jobs::ReportOptions options;
-    options.bases = listText(bases);
-    options.maxOrder = maxOrder;
-    options.outgoing = outgoingText(outgoing);
-    options.cosine = cosine;
-    options.wavelets = wavelets;
-    options.tolerance = tolerance;
-    options.maxEvaluations = static_cast<std::size_t>(maxEvaluations);
-    Source source(brdf, rgb);
+    Keywords given(keywords);
+    given.set(boundOptions(jobs::reportOptions(), options));
+    const py::object progress = given.take("progress");
+    given.finish();
+    Source source(brdf, options.rgb);
     auto report = std::make_shared<Report>();
     Source* const sources[] = {&source};
     watched(progress, sources, [&](const jobs::Listener& listener) {
@@ -140,35 +132,33 @@ void bindCurves(py::module_& module) {
             return fmt::format("<hshfit.Curves of {}, {} bases>", entry(r).brdf,
                                entry(r).curves.size());
         });
-    const jobs::ReportOptions options;
-    module.def("curves", curvesOf, py::arg("brdf"), py::kw_only(), py::arg("bases") = options.bases,
-               py::arg("max_order") = options.maxOrder, py::arg("outgoing") = py::none(),
-               py::arg("cosine") = options.cosine, py::arg("rgb") = options.rgb,
-               py::arg("wavelets") = options.wavelets, py::arg("tolerance") = options.tolerance,
-               py::arg("max_evaluations") = static_cast<double>(options.maxEvaluations),
-               py::arg("progress") = py::none(),
-               R"(The share of the energy that each basis captures, by order (Eq. 15).
+    jobs::ReportOptions options;
+    define(module,
+           {"curves", "brdf: BrdfLike", boundOptions(jobs::reportOptions(), options), "Curves",
+            R"(The share of the energy that each basis captures, by order (Eq. 15).
 
-bases: "all", names with commas, or a sequence of names. outgoing: None is 16 elevations of an
-isotropic BRDF, else 16x16. wavelets adds the best n^2 terms of SOHO wavelets. Returns Curves.)");
+bases: "all", names with commas, or a sequence of names. Returns Curves.)"},
+           curvesOf, py::arg("brdf"));
+}
+
+Options optionsOf(jobs::CompareOptions& options, jobs::FigureArguments& figures) {
+    return joined({boundOptions(jobs::compareOptions(), options),
+                   boundOptions(jobs::figureOptions(), figures)});
 }
 
 std::shared_ptr<jobs::Compared> compared(const py::object& a, const py::object& b,
-                                         const py::object& metrics, const py::object& outgoing,
-                                         bool rgb, const py::object& folder,
-                                         const std::string& sigma, const py::object& figures,
-                                         const std::string& width, const std::string& font,
-                                         double fontSize, const std::string& axis,
-                                         const std::string& panels, const py::object& progress) {
-    if (!sigma.empty() && figures.is_none())
-        throw UsageError("sigma is for the bars of figures; give figures, their folder");
+                                         const py::kwargs& keywords) {
     jobs::CompareOptions options;
-    options.sigma = sigma;
-    options.figures = figuresFrom(figures, width, font, fontSize, axis, panels);
-    options.metrics = listText(metrics);
-    options.outgoing = outgoingText(outgoing);
+    jobs::FigureArguments figures;
+    Keywords given(keywords);
+    given.set(optionsOf(options, figures));
+    const py::object folder = given.take("folder"), progress = given.take("progress");
+    given.finish();
+    if (!options.sigma.empty() && figures.figures.empty())
+        throw UsageError("sigma is for the bars of figures; give figures, their folder");
+    options.figures = figures.parsed();
     const auto specified = [](const py::object& source) { return !py::isinstance<Brdf>(source); };
-    Source first(a, rgb && specified(a), "a"), second(b, rgb && specified(b), "b");
+    Source first(a, options.rgb && specified(a), "a"), second(b, options.rgb && specified(b), "b");
     const std::string output = folder.is_none() ? "" : pathOf(folder, "folder");
     std::shared_ptr<jobs::Compared> result;
     Source* const sources[] = {&first, &second};
@@ -248,22 +238,19 @@ void bindCompare(py::module_& module) {
         .def("__repr__", [](const jobs::Compared& c) {
             return fmt::format("<hshfit.Comparison of {} against {}>", c.b, c.a);
         });
-    const jobs::CompareOptions options;
-    module.def(
-        "compare", compared, py::arg("a"), py::arg("b"), py::kw_only(),
-        py::arg("metrics") = options.metrics, py::arg("outgoing") = py::none(),
-        py::arg("rgb") = options.rgb, py::arg("folder") = py::none(),
-        py::arg("sigma") = options.sigma, py::arg("figures") = py::none(),
-        py::arg("figure_width") = figureWidth, py::arg("font") = std::string(defaultFigureFont),
-        py::arg("font_size") = FigureStyle{}.fontSize, py::arg("axis") = figureAxis,
-        py::arg("panels") = jobs::FigureOptions{}.panels, py::arg("progress") = py::none(),
-        R"(Errors of the approximation b against the reference a, each a Brdf, Coefficients, a
+    jobs::CompareOptions options;
+    jobs::FigureArguments figures;
+    define(module,
+           {"compare",
+            "a: BrdfLike, b: BrdfLike",
+            optionsOf(options, figures),
+            "Comparison",
+            R"(Errors of the approximation b against the reference a, each a Brdf, Coefficients, a
 Form, a Projection, a Fit, or a specification or path.
 
-metrics: "all", names with commas, or a sequence. outgoing: None is that of the coefficients, else
-16 elevations or 16x16. folder takes a page with figures and spheres; figures a folder of PDF and
-SVG for print, whose look is that of fit(); sigma the uncertainty of measured samples of a, "2%" or
-"column", for their bars. Returns a Comparison.)");
+folder takes a page with figures and spheres. Returns a Comparison.)",
+            {{"folder", "Optional[Path]"}}},
+           compared, py::arg("a"), py::arg("b"));
 }
 
 }  // namespace

@@ -28,13 +28,24 @@ std::vector<Word> withAll(std::vector<Word> words);
 
 // Words of options that several commands have, from the catalogs and, of enumerations, in the order
 // of their messages.
+std::vector<Word> basisLists();  ///< with all
 std::vector<Word> basisWords();
 std::vector<Word> formWords();
+std::vector<Word> lossWords();
+std::vector<Word> metricLists();  ///< with all
+std::vector<Word> metricWords();
+std::vector<Word> modelWords();
 std::vector<Word> numberWords();
 std::vector<Word> precisionWords();
+std::vector<Word> repairWords();  ///< with all
+std::vector<Word> sigmaWords();
 std::vector<Word> splitWords();
 std::vector<Word> storageWords();
 std::vector<Word> targetWords();
 std::vector<Word> windowWords();
+std::vector<Word> writerWords();
+
+/// Uncertainties of samples.
+inline constexpr Values sigmaValues{.words = sigmaWords, .files = Files::read, .dash = ".csv"};
 
 }  // namespace hshfit::jobs

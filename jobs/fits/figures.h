@@ -1,6 +1,7 @@
 #pragma once
 
 #include <jobs/common/listener.h>
+#include <jobs/common/option_row.h>
 
 #include <hshfit/files/file_set.h>
 #include <hshfit/pages/comparison.h>
@@ -23,6 +24,17 @@ struct FigureOptions {
     FigureStyle style = {};
     std::string panels = "auto";  ///< brdfs::chosenCuts
 };
+
+/// The same as words; `figures` is their folder.
+struct FigureArguments {
+    std::string figures = {}, figureWidth = "column", font = std::string(defaultFigureFont),
+                fontSize = "8", axis = "auto", panels = "auto";
+
+    /// None without a folder. Throws UsageError for a value that makes no figure, and for a look
+    /// without a folder.
+    std::optional<FigureOptions> parsed() const;
+};
+OptionRows<FigureArguments> figureOptions();
 
 /// Throws UsageError for options that make no figure, before the work.
 void checkFigures(const FigureOptions& options);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <jobs/common/listener.h>
+#include <jobs/common/option_row.h>
 #include <jobs/source/quality.h>
 #include "figures.h"
 #include "fit_folder.h"
@@ -61,6 +62,9 @@ struct FitOptions {
     /// Where the fit is poor: try others in brief, for Fitted::poor.
     bool advise = true;
 };
+/// Those that a front end states; with those of its figures and of `instrument`.
+OptionRows<FitOptions> fitOptions();
+OptionRows<brdfs::InstrumentText> instrumentOptions();
 
 /// The name of the loss that these options ask for with these data.
 std::string lossOf(const FitOptions& options, const Brdf& data);

@@ -23,6 +23,7 @@ struct CompareOptions {
     /// Standard uncertainty of the reference's samples, for bars in figures: brdfs::parseSigma.
     std::string sigma = {};
 };
+OptionRows<CompareOptions> compareOptions();
 
 /// The metrics asked for over the measured pairs of the reference alone, each counted once: those
 /// that take more than samples have no value.

@@ -2,6 +2,7 @@
 
 #include <jobs/common/listener.h>
 #include <jobs/common/many.h>
+#include <jobs/common/option_row.h>
 #include <jobs/source/quality.h>
 
 #include <hshfit/accuracy/metrics.h>
@@ -23,6 +24,7 @@ struct ConvertOptions {
     bool measureLoss = false;
     bool force = false;  ///< replace an existing file
 };
+OptionRows<ConvertOptions> convertOptions();
 
 /// Errors of the file as read back, against the BRDF that it was written from.
 struct ConversionLoss {

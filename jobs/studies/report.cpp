@@ -71,11 +71,12 @@ ReportEntry entryOf(const Brdf& brdf, std::span<const Basis* const> bases,
     const Quantity quantity = options.cosine ? Quantity::brdfCosine : Quantity::brdf;
     std::vector<Projection> projections;
     try {
-        projections = hshfit::project(brdf, bases, outgoing,
-                                      {.quantity = quantity,
-                                       .tolerance = options.tolerance,
-                                       .maxEvaluations = options.maxEvaluations,
-                                       .progress = progress});
+        projections =
+            hshfit::project(brdf, bases, outgoing,
+                            {.quantity = quantity,
+                             .tolerance = options.tolerance,
+                             .maxEvaluations = static_cast<std::size_t>(options.maxEvaluations),
+                             .progress = progress});
     } catch (const NumericError& error) {
         projections = withoutNumbers(brdf, bases, outgoing, quantity, error.what());
     }

@@ -2,11 +2,11 @@
 
 #include <jobs/common/inputs.h>
 #include <jobs/common/listener.h>
+#include <jobs/common/option_row.h>
 
 #include <hshfit/pages/report.h>
 #include <hshfit/projection/projection.h>
 
-#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -20,8 +20,9 @@ struct ReportOptions {
     bool rgb = false;           ///< wavelengths as linear Rec. 709
     bool wavelets = false;      ///< a curve of the best terms of spherical wavelets as well
     double tolerance = 0;       ///< as in ProjectionOptions
-    std::size_t maxEvaluations = ProjectionOptions{}.maxEvaluations;
+    double maxEvaluations = static_cast<double>(ProjectionOptions{}.maxEvaluations);
 };
+OptionRows<ReportOptions> reportOptions();
 
 struct Reported {
     std::vector<std::string> specs;  ///< with folders expanded

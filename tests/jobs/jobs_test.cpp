@@ -87,7 +87,7 @@ TEST_F(Jobs, ProjectWritesTheFileOfTheProgram) {
 TEST_F(Jobs, ProjectKeepsTheFormOfTheProgram) {
     const jobs::Projected projected = jobs::project(
         "ggx:alpha=.4", path("job.json"),
-        {.order = 4, .outgoing = "8", .form = Form{.rank = 2, .precision = Precision::half}});
+        {.order = 4, .outgoing = "8", .form = {.rank = 2, .precision = Precision::half}});
     ASSERT_TRUE(projected.kept);
     EXPECT_FALSE(projected.kept->steps.empty());
     runProgram("project ggx:alpha=.4 --order 4 --outgoing 8 --rank 2 --precision half -o " +

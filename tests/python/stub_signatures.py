@@ -13,7 +13,7 @@ SOURCE = Path(__file__).parents[2] / "python" / "hshfit" / "__init__.pyi"
 
 def signature(doc, name):
     """The lines of a stub, one for each argument; None for other functions."""
-    found = re.match(rf"{name}\((.*), progress: Progress = None\) -> (\w+)\n", doc)
+    found = re.match(rf"{name}\((.*), progress: Progress = None\) -> (.+)\n", doc)
     if not found:
         return None
     arguments = re.split(r", (?=\w+: |\*)", found[1]) + ["progress: Progress = None"]
