@@ -1,4 +1,6 @@
 #include "command.h"
+#include "command_rows.h"
+#include "job_options.h"
 
 #include <hshfit/choice/choice_files.h>
 
@@ -12,7 +14,6 @@ namespace {
 
 struct ChooseArguments {
     std::string spec, output;
-    double bytes = 0;
     jobs::ChooseOptions options;
 };
 
@@ -22,10 +23,8 @@ bool writesFiles(const choice::Choice& choice) {
 }
 
 void runChoose(const ChooseArguments& arguments, Globals& globals) {
-    jobs::ChooseOptions options = arguments.options;
-    if (arguments.bytes > 0) options.bytes = static_cast<std::size_t>(arguments.bytes);
     const choice::Choice choice =
-        jobs::choose(arguments.spec, arguments.output, options, listenerFor(globals));
+        jobs::choose(arguments.spec, arguments.output, arguments.options, listenerFor(globals));
     if (globals.json) {
         printText(choice::choiceJson(choice));
     } else {
@@ -40,28 +39,16 @@ void runChoose(const ChooseArguments& arguments, Globals& globals) {
 
 }  // namespace
 
+OptionTables chooseRows() {
+    return {jobs::chooseOptions().rows};
+}
+
 void addChoose(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<ChooseArguments>();
     command.add_option("SPEC", arguments->spec, "A BRDF")->required();
     command.add_option("-o,--output", arguments->output,
                        "Folder for choice.html, choice.json and the recommended material");
-    command
-        .add_option("--for", arguments->options.renderer,
-                    "The renderer, format or shading language that takes the material")
-        ->capture_default_str();
-    command
-        .add_option("--kinds", arguments->options.kinds,
-                    "Kinds of candidates to try: of model, lobes, gltf, openpbr, halfway, "
-                    "coefficients, bsdf (default: all)")
-        ->delimiter(',')
-        ->allow_extra_args(false);
-    command.add_option("--bytes", arguments->bytes, "Recommend nothing that takes more")
-        ->check(CLI::Range(1.0, 1e15));
-    command
-        .add_option("--error", arguments->options.error,
-                    "Mean FLIP of a faithful material at most (default: 0.1); if it is stated, "
-                    "nothing else is recommended")
-        ->check(CLI::Range(0.0, 1.0));
+    addOptions(command, jobs::chooseOptions(), arguments->options);
     command.callback([arguments, &globals] { runChoose(*arguments, globals); });
 }
 

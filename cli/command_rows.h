@@ -11,11 +11,17 @@ namespace hshfit::cli {
 
 using OptionTables = std::vector<std::span<const jobs::OptionRow>>;
 
+OptionTables chooseRows();
 OptionTables compareRows();
 OptionTables convertRows();
 OptionTables exportRows();
 OptionTables fitRows();
+OptionTables gaussianRows();
+OptionTables ltcRows();
+OptionTables planRows();
 OptionTables projectRows();
 OptionTables reportRows();
+OptionTables stressRows();
+OptionTables tradeoffRows();
 
 }  // namespace hshfit::cli

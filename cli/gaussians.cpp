@@ -1,5 +1,7 @@
 #include "command.h"
+#include "command_rows.h"
 #include "documents.h"
+#include "job_options.h"
 
 #include <jobs/fits/gaussians.h>
 
@@ -10,54 +12,38 @@
 namespace hshfit::cli {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 struct GaussianArguments {
-    std::string spec, output, kind = "sg", weight = "cosine";
+    std::string spec, output;
     jobs::GaussianOptions options;
 };
 
-void runGaussians(GaussianArguments& arguments, const Globals& globals) {
-    brdfs::GaussianFitOptions& fit = arguments.options.fit;
-    jobs::parseGaussians(arguments.kind, arguments.weight, fit);
+void runGaussians(const GaussianArguments& arguments, const Globals& globals) {
     const jobs::FittedGaussians fitted = jobs::fitGaussians(
         arguments.spec, arguments.output, arguments.options, listenerFor(globals));
-    if (globals.json) return printJson(jobs::gaussiansJson(fitted, arguments.output, fit));
+    const Json answer = jobs::gaussiansJson(fitted, arguments.output, arguments.options);
+    if (globals.json) return printJson(answer);
     std::string text = fmt::format(
         "{}: {} {} lobes for each of {} outgoing directions; relative error {:.4f}, albedo off by "
         "at most {:.2f} %\n",
-        arguments.output, fit.lobes, arguments.kind, fitted.outgoing.size(), fitted.meanError,
-        100 * fitted.largestEnergyError);
+        arguments.output, answer["lobes"].get<int>(), answer["kind"].get<std::string>(),
+        fitted.outgoing.size(), fitted.meanError, 100 * fitted.largestEnergyError);
     for (const MetricValue& value : fitted.metrics) text += metricText(value);
     printText(text);
 }
 
 }  // namespace
 
+OptionTables gaussianRows() {
+    return {jobs::gaussianOptions().rows};
+}
+
 void addGaussians(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<GaussianArguments>();
     command.add_option("SPEC", arguments->spec, "BRDF; isotropic")->required();
     command.add_option("-o,--output", arguments->output, "Mixture, .json")->required();
-    command
-        .add_option("--lobes", arguments->options.fit.lobes,
-                    "Gaussians for each outgoing direction")
-        ->check(CLI::Range(1, 16))
-        ->capture_default_str();
-    command.add_option("--kind", arguments->kind, "sg (spherical) or asg (anisotropic)")
-        ->check(CLI::IsMember({"sg", "asg"}))
-        ->capture_default_str();
-    command
-        .add_option("--outgoing", arguments->options.outgoing,
-                    "N (elevations) or THETA,PHI in degrees")
-        ->capture_default_str();
-    command
-        .add_option("--weight", arguments->weight,
-                    "Least squares of f cos(theta_i) (cosine) or of f (none)")
-        ->check(CLI::IsMember({"cosine", "none"}))
-        ->capture_default_str();
-    command.add_flag("--keep-energy", arguments->options.fit.keepEnergy,
-                     "Scale amplitudes so that every albedo is kept");
-    command.add_option("--metrics", arguments->options.metrics,
-                       "Report the error: all, or names from hshfit list metrics");
-    addRgb(command, arguments->options.rgb);
+    addOptions(command, jobs::gaussianOptions(), arguments->options);
     command.callback([arguments, &globals] { runGaussians(*arguments, globals); });
 }
 

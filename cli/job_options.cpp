@@ -45,14 +45,27 @@ public:
             nameOf(row_), [value](const std::string& word) { value.set(value.at, word); }));
         if (!fallback.empty()) option.default_str(fallback);
     }
+    /// Numbers that may be left out, and are given as 1e6, too.
+    template <class Number>
+    void operator()(std::optional<Number>* value) const {
+        CLI::Option* option = command_.add_option_function<double>(
+            nameOf(row_), [value](double given) { *value = static_cast<Number>(given); });
+        if (row_.range) option->check(CLI::Range(row_.range->least, row_.range->most));
+        added(option);
+    }
+    /// Several, with commas or by an option for each.
+    template <class Element>
+    void operator()(std::vector<Element>* value) const {
+        CLI::Option* option = command_.add_option(nameOf(row_), *value)->allow_extra_args(false);
+        if (row_.values.syntax == jobs::Syntax::list) option->delimiter(',');
+        checkRange<Element>(*option);
+        if (!value->empty()) option->capture_default_str();
+        added(option);
+    }
     template <class Value>
     void operator()(Value* value) const {
         CLI::Option* option = command_.add_option(nameOf(row_), *value);
-        if constexpr (std::is_arithmetic_v<Value>) {
-            if (row_.range)
-                option->check(CLI::Range(static_cast<Value>(row_.range->least),
-                                         static_cast<Value>(row_.range->most)));
-        }
+        checkRange<Value>(*option);
         if (*value != Value{}) option->capture_default_str();
         added(option);
     }
@@ -63,6 +76,14 @@ private:
         CLI::Option& flag = added(command_.add_flag_callback(name, std::move(set)));
         flag.description(std::string(help));
         return flag;
+    }
+    template <class Value>
+    void checkRange(CLI::Option& option) const {
+        if constexpr (std::is_arithmetic_v<Value>) {
+            if (row_.range)
+                option.check(CLI::Range(static_cast<Value>(row_.range->least),
+                                        static_cast<Value>(row_.range->most)));
+        }
     }
     /// States the help, the default in words and the choices.
     CLI::Option& added(CLI::Option* option) const {

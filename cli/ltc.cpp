@@ -1,4 +1,6 @@
 #include "command.h"
+#include "command_rows.h"
+#include "job_options.h"
 
 #include <jobs/fits/ltc.h>
 
@@ -11,13 +13,12 @@ namespace hshfit::cli {
 namespace {
 
 struct LtcArguments {
-    std::string spec, mapping = "square";
+    std::string spec;
     std::vector<std::string> outputs;
     brdfs::LtcTableOptions table;
 };
 
-void runLtc(LtcArguments& arguments, const Globals& globals) {
-    arguments.table.mapping = jobs::parseMapping(arguments.mapping);
+void runLtc(const LtcArguments& arguments, const Globals& globals) {
     const jobs::FittedLtc fitted =
         jobs::fitLtc(arguments.spec, arguments.outputs, arguments.table, listenerFor(globals));
     const brdfs::LtcTable& table = fitted.table;
@@ -33,6 +34,10 @@ void runLtc(LtcArguments& arguments, const Globals& globals) {
 
 }  // namespace
 
+OptionTables ltcRows() {
+    return {jobs::ltcOptions().rows};
+}
+
 void addLtc(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<LtcArguments>();
     command
@@ -44,19 +49,7 @@ void addLtc(CLI::App& command, Globals& globals) {
                     ".json, or NAME.exr or NAME.dds for NAME_1 and NAME_2; may be repeated")
         ->required()
         ->allow_extra_args(false);
-    command.add_option("--size", arguments->table.size, "Cells a side")
-        ->check(CLI::Range(2, 1024))
-        ->capture_default_str();
-    command
-        .add_option("--parameter", arguments->table.parameter,
-                    "What runs over roughness; several with commas (ax,ay) get the same value")
-        ->capture_default_str();
-    command
-        .add_option("--mapping", arguments->mapping,
-                    "Its value for the roughness r of a column: square (r^2), linear (r) or "
-                    "exponent (2/r^4 - 2)")
-        ->check(CLI::IsMember({"square", "linear", "exponent"}))
-        ->capture_default_str();
+    addOptions(command, jobs::ltcOptions(), arguments->table);
     command.callback([arguments, &globals] { runLtc(*arguments, globals); });
 }
 

@@ -1,5 +1,6 @@
 #include "command.h"
-#include "within.h"
+#include "command_rows.h"
+#include "job_options.h"
 
 #include <hshfit/error.h>
 #include <hshfit/plan/plan_files.h>
@@ -60,6 +61,10 @@ void runPlan(const PlanArguments& arguments, Globals& globals) {
 
 }  // namespace
 
+OptionTables planRows() {
+    return {jobs::planOptions().rows};
+}
+
 void addPlan(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<PlanArguments>();
     command.add_option("SCENE", arguments->scene, "Materials, lights, views and budget, as JSON")
@@ -68,15 +73,7 @@ void addPlan(CLI::App& command, Globals& globals) {
         .add_option("-o,--output", arguments->output,
                     "Folder for the coefficient files, plan.json, plan.csv and plan.html")
         ->required();
-    command.add_option("--bases", arguments->options.bases, "Bases to try, orthonormal ones")
-        ->delimiter(',')
-        ->capture_default_str();
-    command.add_option("--max-order", arguments->options.maxOrder, "Bands to try")
-        ->check(within(jobs::bounds::planOrder))
-        ->capture_default_str();
-    command.add_flag("--by-time", arguments->options.byTime,
-                     "Of the forms within the budget, the fastest instead of the smallest; what is "
-                     "measured may differ between runs");
+    addOptions(command, jobs::planOptions(), arguments->options);
     command.add_option("--lighting", arguments->lighting,
                        "Choose a model of lighting for each material too (hshfit tradeoff "
                        "--lighting), within the number of its budget: all, or of coefficients, "

@@ -10,7 +10,6 @@
 #include <brdfs/presets/preset_collection.h>
 #include <jobs/common/option_words.h>
 #include <jobs/lighting/lighting_models.h>
-#include <jobs/studies/choose_renderers.h>
 
 #include <CLI/CLI.hpp>
 
@@ -21,28 +20,14 @@ namespace {
 
 using Words = std::vector<Word>;
 
-using jobs::basisLists;
 using jobs::basisWords;
-using jobs::formWords;
 using jobs::lightingWords;
 using jobs::lossWords;
-using jobs::metricLists;
-using jobs::metricWords;
 using jobs::modelWords;
-using jobs::precisionWords;
-using jobs::sigmaWords;
 using jobs::splitWords;
 using jobs::windowWords;
 using jobs::withAll;
 using jobs::wordsOf;
-
-Words rendererWords() {
-    return wordsOf(jobs::renderers());
-}
-
-Words kindWords() {
-    return wordsOf(jobs::candidateKinds());
-}
 
 Words conventionWords() {
     Words words;
@@ -73,10 +58,6 @@ Words mapPrecisionWords() {
     return {{"half"}, {"float32"}};
 }
 
-Words constraintWords() {
-    return {{"none"}, {"non-negative"}, {"energy-preserving"}, {"both"}};
-}
-
 Words rotationWords() {
     return {{"exact"}, {"through-sh"}, {"table"}, {"paper-shift"}};
 }
@@ -87,8 +68,6 @@ constexpr ValueRow valueRows[] = {
     {"batch", "--output", {nullptr, Syntax::word, Files::folder}},
     {"batch", "--costs", {nullptr, Syntax::word, Files::read}},
     {"batch", "--progress", {nullptr, Syntax::word, Files::added}},
-    {"choose", "--for", {rendererWords}},
-    {"choose", "--kinds", {kindWords, Syntax::list}},
     {"choose", "--output", {nullptr, Syntax::word, Files::folder}},
     {"compare", "--output", {nullptr, Syntax::word, Files::folder}},
     {"convert", "--output", {nullptr, Syntax::word, Files::folder}},
@@ -126,32 +105,21 @@ constexpr ValueRow valueRows[] = {
     {"svbrdf", "--output", {nullptr, Syntax::word, Files::folder}},
     {"svbrdf", "--precision", {mapPrecisionWords}},
     {"tradeoff", "--output", {nullptr, Syntax::word, Files::folder}},
-    {"tradeoff", "--halfway"},
     {"transfer", "--material", {nullptr, Syntax::brdf, Files::read}},
     {"transfer", "--output", {nullptr, Syntax::word, Files::folder}},
     {"", "--basis", {basisWords}},
-    {"", "--bases", {basisLists, Syntax::list}},
     {"", "--compare-models", {modelWords, Syntax::sum}},
-    {"", "--constraints", {constraintWords, Syntax::list}},
     {"", "--convention", {conventionWords}},
-    {"", "--forms", {formWords, Syntax::list}},
     {"", "--light", {nullptr, Syntax::light, Files::read, ""}},
     {"", "--lighting", {lightingWords, Syntax::list}},
     {"", "--loss", {lossWords}},
     {"", "--mesh", {nullptr, Syntax::word, Files::read}},
-    {"", "--metric", {metricWords}},
-    {"", "--metrics", {metricLists, Syntax::list}},
-    {"", "--model", {modelWords, Syntax::sum}},
     {"", "--output", {nullptr, Syntax::word, Files::written, ".json"}},
     {"", "--pairs", {nullptr, Syntax::word, Files::read, ""}},
-    {"", "--precisions", {precisionWords, Syntax::list}},
     {"", "--records", {nullptr, Syntax::word, Files::added}},
     {"", "--reference", {nullptr, Syntax::word, Files::read, ""}},
     {"", "--source", {nullptr, Syntax::brdf, Files::read, ""}},
-    {"", "--split", {splitWords, Syntax::brdf, Files::read, ""}},
     {"", "--window", {windowWords}},
-    {"", "--windows", {windowWords, Syntax::list}},
-    {"", "--write-pairs", {nullptr, Syntax::word, Files::written, ".csv"}},
     {"", "A", {nullptr, Syntax::brdf, Files::read, ""}},
     {"", "B", {nullptr, Syntax::brdf, Files::read, ""}},
     {"", "BASIS", {basisWords}},

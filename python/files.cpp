@@ -52,10 +52,8 @@ py::object readFile(const py::object& path) {
 
 py::dict converted(const py::object& input, const py::object& output, const py::kwargs& keywords) {
     jobs::ConvertOptions options;
-    Keywords given(keywords);
-    given.set(boundOptions(jobs::convertOptions(), options));
-    const py::object progress = given.take("progress");
-    given.finish();
+    const py::object progress =
+        optionsFrom(keywords, boundOptions(jobs::convertOptions(), options));
     const std::string from = pathOf(input, "input"), to = pathOf(output, "output");
     jobs::Converted done;
     watched(progress, {}, [&](const jobs::Listener& listener) {
@@ -98,10 +96,7 @@ py::dict exportedDict(const jobs::Exported& done) {
 py::dict exported(const py::object& coefficients, const py::object& folder,
                   const py::kwargs& keywords) {
     jobs::ExportOptions options;
-    Keywords given(keywords);
-    given.set(optionsOf(options));
-    const py::object progress = given.take("progress");
-    given.finish();
+    const py::object progress = optionsFrom(keywords, optionsOf(options));
     const std::string from = pathOf(coefficients, "coefficients"), to = pathOf(folder, "folder");
     jobs::Exported done;
     watched(progress, {}, [&](const jobs::Listener& listener) {

@@ -151,10 +151,7 @@ Options rankOptions(jobs::FitOptions& options) {
 py::list ranked(const py::object& data, const std::vector<std::string>& models,
                 const py::kwargs& keywords) {
     jobs::FitOptions options;
-    Keywords given(keywords);
-    given.set(rankOptions(options));
-    const py::object progress = given.take("progress");
-    given.finish();
+    const py::object progress = optionsFrom(keywords, rankOptions(options));
     Source source(data, options.rgb, "data");
     std::vector<brdfs::ModelRank> ranks;
     Source* const sources[] = {&source};

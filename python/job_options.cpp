@@ -66,10 +66,23 @@ struct Setter {
     void operator()(std::vector<std::string>* value) const {
         value->clear();
         if (given.is_none()) return;
-        if (py::isinstance<py::str>(given) || py::hasattr(given, "__fspath__"))
+        const bool one = py::isinstance<py::str>(given) || py::hasattr(given, "__fspath__") ||
+                         py::isinstance<OutgoingSet>(given);
+        if (one)
             value->push_back(textOf(given));
         else
             for (const py::handle each : given) value->push_back(textOf(each));
+    }
+    template <class Number>
+    void operator()(std::vector<Number>* value) const {
+        *value = given.is_none() ? std::vector<Number>() : cast<std::vector<Number>>();
+        if (row.range)
+            for (const Number each : *value) requireWithin(keyword.c_str(), each, *row.range);
+    }
+    template <class Number>
+    void operator()(std::optional<Number>* value) const {
+        *value = cast<std::optional<Number>>();
+        if (*value && row.range) requireWithin(keyword.c_str(), **value, *row.range);
     }
     void operator()(const jobs::Spelled& value) const { value.set(value.at, textOf(given)); }
     template <class Value>
@@ -95,6 +108,16 @@ struct Stater {
     }
     std::string operator()(const double* value) const {
         return stated("float", py::float_(*value));
+    }
+    std::string operator()(const std::optional<std::size_t>* value) const {
+        return stated("Optional[int]", py::cast(*value));
+    }
+    std::string operator()(const std::optional<double>* value) const {
+        return stated("Optional[float]", py::cast(*value));
+    }
+    template <class Number>
+    std::string operator()(const std::vector<Number>* value) const {
+        return stated("Sequence[int]", py::tuple(py::cast(*value)));
     }
     std::string operator()(const std::vector<std::string>* value) const {
         return stated("Names", py::tuple(py::cast(*value)));
@@ -179,6 +202,14 @@ void Keywords::finish(std::string_view name, const Options& options) const {
 void Keywords::finish() const {
     for (const auto& [name, value] : left_)
         refuseType(fmt::format("no argument {}", py::str(name).cast<std::string>()));
+}
+
+py::object optionsFrom(const py::kwargs& keywords, const Options& options) {
+    Keywords given(keywords);
+    given.set(options);
+    py::object progress = given.take("progress");
+    given.finish();
+    return progress;
 }
 
 std::string docstring(const OptionFunction& function) {

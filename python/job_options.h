@@ -41,6 +41,10 @@ private:
     py::dict left_;
 };
 
+/// Sets the options from the keyword arguments of a function that takes no others but `progress`,
+/// which is returned. Throws as Keywords does.
+py::object optionsFrom(const py::kwargs& keywords, const Options& options);
+
 /// A function whose arguments behind those by place are options, and `progress`.
 struct OptionFunction {
     const char* name;

@@ -50,10 +50,7 @@ Options optionsOf(jobs::ProjectOptions& options) {
 
 std::shared_ptr<Result> projected(const py::object& brdf, const py::kwargs& keywords) {
     jobs::ProjectOptions options;
-    Keywords given(keywords);
-    given.set(optionsOf(options));
-    const py::object progress = given.take("progress");
-    given.finish();
+    const py::object progress = optionsFrom(keywords, optionsOf(options));
     Source source(brdf, options.rgb);
     jobs::Projected done;
     Source* const sources[] = {&source};

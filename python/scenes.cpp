@@ -1,4 +1,5 @@
 #include "arrays.h"
+#include "job_options.h"
 #include "watched.h"
 
 #include <hshfit/error.h>
@@ -139,11 +140,9 @@ py::object transferred(const py::object& scene, const py::object& folder, const 
     return fromJson(answer);
 }
 
-py::object planned(const py::object& scene, const py::object& folder,
-                   const std::vector<std::string>& bases, int maxOrder, bool byTime,
-                   const py::object& progress) {
-    requireWithin("max_order", maxOrder, bounds::planOrder);
-    const plan::PlanOptions options{.bases = bases, .maxOrder = maxOrder, .byTime = byTime};
+py::object planned(const py::object& scene, const py::object& folder, const py::kwargs& keywords) {
+    plan::PlanOptions options;
+    const py::object progress = optionsFrom(keywords, boundOptions(jobs::planOptions(), options));
     const std::string path = pathOf(scene, "scene"), output = pathOf(folder, "folder");
     nlohmann::ordered_json answer;
     watched(progress, {}, [&](const jobs::Listener& listener) {
@@ -217,18 +216,15 @@ energy by pass, bytes, errors.)");
 void bindScenes(py::module_& module) {
     bindIlluminate(module);
     bindTransfer(module);
-    const plan::PlanOptions options;
-    module.def(
-        "plan", planned, py::arg("scene"), py::arg("folder"), py::kw_only(),
-        py::arg("bases") = options.bases, py::arg("max_order") = options.maxOrder,
-        py::arg("by_time") = options.byTime, py::arg("progress") = py::none(),
-        R"(The cheapest coefficient file for each material of a scene, checked in its own light.
+    plan::PlanOptions options;
+    define(module,
+           {"plan", "scene: Path, folder: Path", boundOptions(jobs::planOptions(), options), "Row",
+            R"(The cheapest coefficient file for each material of a scene, checked in its own light.
 
-scene  a scene file with lights and a budget; bases: orthonormal ones to try, up to max_order
-by_time: of the forms within the budget the fastest instead of the smallest
-
-Writes the files and plan.json, plan.csv and plan.html to folder. Returns the answer of the command:
-of each material its form, bytes, error and verified error, or why it has no plan.)");
+scene: a scene file with lights and a budget. Writes the files and plan.json, plan.csv and plan.html
+to folder. Returns the answer of the command: of each material its form, bytes, error and verified
+error, or why it has no plan.)"},
+           planned, py::arg("scene"), py::arg("folder"));
 }
 
 }  // namespace hshfit::python

@@ -40,10 +40,7 @@ py::object firstOf(const ReportCurve& curve, double accuracy) {
 
 std::shared_ptr<Report> curvesOf(const py::object& brdf, const py::kwargs& keywords) {
     jobs::ReportOptions options;
-    Keywords given(keywords);
-    given.set(boundOptions(jobs::reportOptions(), options));
-    const py::object progress = given.take("progress");
-    given.finish();
+    const py::object progress = optionsFrom(keywords, boundOptions(jobs::reportOptions(), options));
     Source source(brdf, options.rgb);
     auto report = std::make_shared<Report>();
     Source* const sources[] = {&source};

@@ -61,8 +61,10 @@ struct Spelled {
 };
 
 /// A member of an options struct, where front ends read its default and set its value.
-using OptionValue = std::variant<bool*, std::optional<bool>*, int*, std::size_t*, double*,
-                                 std::string*, std::vector<std::string>*, Spelled>;
+using OptionValue =
+    std::variant<bool*, std::optional<bool>*, int*, std::size_t*, double*,
+                 std::optional<std::size_t>*, std::optional<double>*, std::string*,
+                 std::vector<std::string>*, std::vector<int>*, std::vector<std::size_t>*, Spelled>;
 
 /// The way to the member in a struct of the type `owner`.
 struct Member {

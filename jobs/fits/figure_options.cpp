@@ -22,7 +22,7 @@ std::vector<Word> panelWords() {
     return {{"auto", "at most six"}, {"all"}};
 }
 
-constexpr OptionRow rows[] = {
+constexpr OptionRow figureRows[] = {
     OptionRow{"figures", at<&FigureArguments::figures>,
               "Folder for figures for print (.pdf, .svg), their data and a table (.tex) of the "
               "parameters of a fit, made if absent"}
@@ -44,7 +44,7 @@ constexpr OptionRow rows[] = {
 }  // namespace
 
 OptionRows<FigureArguments> figureOptions() {
-    return {rows};
+    return {figureRows};
 }
 
 std::optional<FigureOptions> FigureArguments::parsed() const {

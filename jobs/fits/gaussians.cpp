@@ -1,10 +1,12 @@
 #include "gaussians.h"
 
 #include <jobs/common/metric_json.h>
+#include <jobs/common/option_words.h>
+#include <jobs/common/shared_options.h>
 #include <jobs/source/source.h>
 
-#include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
+#include <hshfit/spelling.h>
 
 #include <brdfs/fit/gaussian_mixture_json.h>
 
@@ -12,10 +14,54 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace hshfit::jobs {
 namespace {
+
+using options::at;
+using options::spelled;
+
+brdfs::GaussianKind parseGaussianKind(std::string_view name) {
+    if (name == "sg") return brdfs::GaussianKind::spherical;
+    if (name == "asg") return brdfs::GaussianKind::anisotropic;
+    throw spelling::unknown("kind", name, std::array<std::string_view, 2>{"sg", "asg"});
+}
+
+std::string_view gaussianKindName(brdfs::GaussianKind kind) {
+    return kind == brdfs::GaussianKind::spherical ? "sg" : "asg";
+}
+
+std::vector<Word> gaussianKinds() {
+    return {{"sg", "spherical"}, {"asg", "anisotropic"}};
+}
+
+std::vector<Word> gaussianWeights() {
+    return {{"cosine"}, {"none"}};
+}
+
+constexpr OptionRow gaussianRows[] = {
+    OptionRow{"lobes", at<&GaussianOptions::fit, &brdfs::GaussianFitOptions::lobes>,
+              "Gaussians for each outgoing direction"}
+        .within(Bounds<int>{1, 16}),
+    OptionRow{"kind",
+              spelled<parseGaussianKind, gaussianKindName, &GaussianOptions::fit,
+                      &brdfs::GaussianFitOptions::kind>,
+              "sg (spherical) or asg (anisotropic)"}
+        .takes({.words = gaussianKinds, .complete = true}),
+    OptionRow{"outgoing", at<&GaussianOptions::outgoing>, "N (elevations) or THETA,PHI in degrees"}
+        .takes({.syntax = Syntax::outgoing}),
+    OptionRow{"weight", at<&GaussianOptions::weight>,
+              "Least squares of f cos(theta_i) (cosine) or of f (none)"}
+        .takes({.words = gaussianWeights, .complete = true}),
+    OptionRow{"keep-energy", at<&GaussianOptions::fit, &brdfs::GaussianFitOptions::keepEnergy>,
+              "Scale amplitudes so that every albedo is kept"},
+    OptionRow{"metrics", at<&GaussianOptions::metrics>,
+              "Report the error: all, or names of metrics"}
+        .takes({metricLists, Syntax::list}),
+    rgbRow(at<&GaussianOptions::rgb>),
+};
 
 void addTotals(FittedGaussians& result) {
     const auto& elevations = result.mixture.content().elevations;
@@ -30,13 +76,21 @@ void addTotals(FittedGaussians& result) {
 
 }  // namespace
 
+OptionRows<GaussianOptions> gaussianOptions() {
+    return {gaussianRows};
+}
+
 FittedGaussians fitGaussians(const std::string& spec, const std::string& output,
                              const GaussianOptions& options, const Listener& listener) {
+    constexpr std::array<std::string_view, 2> weights{"cosine", "none"};
+    if (std::ranges::find(weights, options.weight) == weights.end())
+        throw spelling::unknown("weight", options.weight, weights);
     const auto metrics =
         options.metrics.empty() ? std::vector<const Metric*>() : selectMetrics(options.metrics);
     const OutgoingSet outgoing = OutgoingSet::parse(options.outgoing);
     const auto brdf = openBrdf(spec, options.rgb);
     brdfs::GaussianFitOptions how = options.fit;
+    how.cosine = options.weight == "cosine";
     how.progress = listener.part("gaussians");
     FittedGaussians result{.brdf = brdf->name(),
                            .mixture = brdfs::fitGaussians(*brdf, outgoing, how),
@@ -51,24 +105,14 @@ FittedGaussians fitGaussians(const std::string& spec, const std::string& output,
     return result;
 }
 
-void parseGaussians(const std::string& kind, const std::string& weight,
-                    brdfs::GaussianFitOptions& options) {
-    if (kind != "sg" && kind != "asg")
-        throw UsageError(fmt::format("unknown kind '{}'; known: sg, asg", kind));
-    if (weight != "cosine" && weight != "none")
-        throw UsageError(fmt::format("unknown weight '{}'; known: cosine, none", weight));
-    options.kind = kind == "sg" ? brdfs::GaussianKind::spherical : brdfs::GaussianKind::anisotropic;
-    options.cosine = weight == "cosine";
-}
-
 nlohmann::ordered_json gaussiansJson(const FittedGaussians& fitted, const std::string& output,
-                                     const brdfs::GaussianFitOptions& options) {
+                                     const GaussianOptions& options) {
     return {{"format", "hshfit-gaussians-answer"},
             {"version", 1},
             {"brdf", fitted.brdf},
             {"output", output},
-            {"kind", options.kind == brdfs::GaussianKind::spherical ? "sg" : "asg"},
-            {"lobes", options.lobes},
+            {"kind", gaussianKindName(options.fit.kind)},
+            {"lobes", options.fit.lobes},
             {"outgoing", fitted.outgoing.spec()},
             {"mean_error", fitted.meanError},
             {"largest_energy_error", fitted.largestEnergyError},

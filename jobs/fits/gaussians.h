@@ -1,6 +1,7 @@
 #pragma once
 
 #include <jobs/common/listener.h>
+#include <jobs/common/option_row.h>
 
 #include <hshfit/accuracy/metrics.h>
 
@@ -15,11 +16,14 @@
 namespace hshfit::jobs {
 
 struct GaussianOptions {
-    brdfs::GaussianFitOptions fit = {};  ///< its `progress` is not called: the listener is
-    std::string outgoing = "16";         ///< OutgoingSet::parse; elevations or one direction
-    std::string metrics = {};            ///< names separated by commas, or "all"; empty: none
-    bool rgb = false;                    ///< wavelengths as linear Rec. 709
+    /// Without `cosine`; its `progress` is not called: the listener is.
+    brdfs::GaussianFitOptions fit = {};
+    std::string weight = "cosine";  ///< least squares of f cos(theta_i), or none: of f
+    std::string outgoing = "16";    ///< OutgoingSet::parse; elevations or one direction
+    std::string metrics = {};       ///< names separated by commas, or "all"; empty: none
+    bool rgb = false;               ///< wavelengths as linear Rec. 709
 };
+OptionRows<GaussianOptions> gaussianOptions();
 
 struct FittedGaussians {
     std::string brdf;
@@ -36,11 +40,8 @@ struct FittedGaussians {
 FittedGaussians fitGaussians(const std::string& spec, const std::string& output,
                              const GaussianOptions& options, const Listener& listener = {});
 
-/// sg or asg, and cosine or none. Throws UsageError naming them.
-void parseGaussians(const std::string& kind, const std::string& weight,
-                    brdfs::GaussianFitOptions& options);
 /// The answer of the command, for what was written to `output`.
 nlohmann::ordered_json gaussiansJson(const FittedGaussians& fitted, const std::string& output,
-                                     const brdfs::GaussianFitOptions& options);
+                                     const GaussianOptions& options);
 
 }  // namespace hshfit::jobs

@@ -21,7 +21,40 @@ constexpr MappingName mappings[] = {{"square", brdfs::RoughnessMapping::square},
                                     {"linear", brdfs::RoughnessMapping::linear},
                                     {"exponent", brdfs::RoughnessMapping::exponent}};
 
+brdfs::RoughnessMapping parseMapping(std::string_view name) {
+    const auto* row = std::ranges::find(mappings, name, &MappingName::name);
+    if (row == std::end(mappings))
+        throw spelling::unknown("mapping", name, spelling::namesOf(mappings));
+    return row->mapping;
+}
+
+std::string_view mappingName(brdfs::RoughnessMapping mapping) {
+    return std::ranges::find(mappings, mapping, &MappingName::mapping)->name;
+}
+
+std::vector<Word> mappingWords() {
+    return {{"square", "r^2"}, {"linear", "r"}, {"exponent", "2/r^4 - 2"}};
+}
+
+using options::at;
+
+constexpr OptionRow ltcRows[] = {
+    OptionRow{"size", at<&brdfs::LtcTableOptions::size>, "Cells a side"}.within(
+        Bounds<int>{2, 1024}),
+    OptionRow{"parameter", at<&brdfs::LtcTableOptions::parameter>,
+              "What runs over roughness; several with commas (ax,ay) get the same value"},
+    OptionRow{"mapping",
+              options::spelled<parseMapping, mappingName, &brdfs::LtcTableOptions::mapping>,
+              "Its value for the roughness r of a column: square (r^2), linear (r) or exponent "
+              "(2/r^4 - 2)"}
+        .takes({.words = mappingWords, .complete = true}),
+};
+
 }  // namespace
+
+OptionRows<brdfs::LtcTableOptions> ltcOptions() {
+    return {ltcRows};
+}
 
 FittedLtc fitLtc(const std::string& model, const std::vector<std::string>& outputs,
                  const brdfs::LtcTableOptions& options, const Listener& listener) {
@@ -44,13 +77,6 @@ FittedLtc fitLtc(const std::string& model, const std::vector<std::string>& outpu
         listener.say(fmt::format("{} of {} fits ended before they had settled",
                                  result.summary.unsettled, result.table.cells.size()));
     return result;
-}
-
-brdfs::RoughnessMapping parseMapping(std::string_view name) {
-    const auto* row = std::ranges::find(mappings, name, &MappingName::name);
-    if (row == std::end(mappings))
-        throw spelling::unknown("mapping", name, spelling::namesOf(mappings));
-    return row->mapping;
 }
 
 nlohmann::ordered_json ltcJson(const FittedLtc& fitted) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <jobs/common/listener.h>
+#include <jobs/common/option_row.h>
 
 #include <brdfs/fit/ltc_table.h>
 
@@ -26,8 +27,8 @@ struct FittedLtc {
 FittedLtc fitLtc(const std::string& model, const std::vector<std::string>& outputs,
                  const brdfs::LtcTableOptions& options, const Listener& listener = {});
 
-/// square, linear or exponent. Throws UsageError naming them.
-brdfs::RoughnessMapping parseMapping(std::string_view name);
+/// Those of the table.
+OptionRows<brdfs::LtcTableOptions> ltcOptions();
 /// The answer of the command.
 nlohmann::ordered_json ltcJson(const FittedLtc& fitted);
 

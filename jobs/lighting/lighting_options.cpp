@@ -1,4 +1,5 @@
 #include "lighting.h"
+#include "lighting_trade.h"
 
 #include <jobs/common/option_words.h>
 
@@ -11,7 +12,7 @@ std::vector<Word> engineWords() {
     return wordsOf(lighting::prefilters());
 }
 
-constexpr OptionRow rows[] = {
+constexpr OptionRow lightingRows[] = {
     OptionRow{
         "lighting", at<&LightingExportOptions::models>,
         "Tables, light and shaders for environments and area lights in place of textures: all, or "
@@ -30,14 +31,28 @@ constexpr OptionRow rows[] = {
         .within(Bounds<int>{1, 3}),
 };
 
+constexpr OptionRow tradeRows[] = {
+    OptionRow{"lighting", at<&LightingTradeOptions::models>,
+              "Measure, in place of forms, the models of lighting of hshfit export: all, or of "
+              "coefficients, split-sum, ltc and prefiltered those named"}
+        .takes({lightingWords, Syntax::list}),
+    OptionRow{"light", at<&LightingTradeOptions::errors, &LightingErrorOptions::lights>,
+              "With --lighting, a light; repeated (default: an example of every kind)"}
+        .takes({.syntax = Syntax::light, .files = Files::read, .dash = ""}),
+};
+
 }  // namespace
+
+OptionRows<LightingTradeOptions> lightingTradeOptions() {
+    return {tradeRows};
+}
 
 std::vector<Word> lightingWords() {
     return withAll(summariesOf(lightingModels()));
 }
 
 OptionRows<LightingExportOptions> lightingExportOptions() {
-    return {rows};
+    return {lightingRows};
 }
 
 }  // namespace hshfit::jobs

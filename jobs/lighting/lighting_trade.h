@@ -2,6 +2,8 @@
 
 #include "lighting_errors.h"
 
+#include <jobs/common/option_row.h>
+
 #include <nlohmann/json_fwd.hpp>
 
 #include <cstddef>
@@ -26,6 +28,7 @@ struct LightingTradeOptions {
     std::vector<std::size_t> tiles = {16, 64, 256};  ///< of transformed cosines
     std::vector<std::size_t> lobes = {1, 2, 3};      ///< of prefiltered environments
 };
+OptionRows<LightingTradeOptions> lightingTradeOptions();
 
 /// Every model at every setting under every light, by light: bytes of table and light, time of a
 /// point, relative L2 against direct integration on a sphere. Settings that make the same table

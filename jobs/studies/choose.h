@@ -1,6 +1,7 @@
 #pragma once
 
 #include <jobs/common/listener.h>
+#include <jobs/common/option_row.h>
 
 #include <hshfit/choice/choice.h>
 
@@ -16,6 +17,7 @@ struct ChooseOptions {
     std::optional<std::size_t> bytes = {};  ///< at most
     std::optional<double> error = {};       ///< mean FLIP at most; none: PoorBounds::flip
 };
+OptionRows<ChooseOptions> chooseOptions();
 
 /// The materials that a BRDF can be for a renderer, with their bytes and picture errors, and the
 /// one to take:

@@ -12,7 +12,7 @@ namespace {
 using options::at;
 using options::spelled;
 
-constexpr OptionRow rows[] = {
+constexpr OptionRow formRows[] = {
     OptionRow{
         "form", spelled<parseKind, kindName, &FormOptions::kind>,
         "outgoing (coefficients per outgoing direction), basis (both directions in the basis) or "
@@ -55,7 +55,7 @@ constexpr OptionRow rows[] = {
 }  // namespace
 
 OptionRows<FormOptions> formOptions() {
-    return {rows};
+    return {formRows};
 }
 
 std::optional<Form> FormOptions::form() const {

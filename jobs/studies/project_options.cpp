@@ -8,7 +8,7 @@ namespace {
 
 using options::at;
 
-constexpr OptionRow rows[] = {
+constexpr OptionRow projectRows[] = {
     OptionRow{"basis", at<&ProjectOptions::basis>, "See hshfit list bases"}.takes(
         {.words = basisWords}),
     OptionRow{"order", at<&ProjectOptions::order>, "Number of bands: l = 0 .. order-1"},
@@ -35,7 +35,7 @@ constexpr OptionRow rows[] = {
 }  // namespace
 
 OptionRows<ProjectOptions> projectOptions() {
-    return {rows};
+    return {projectRows};
 }
 
 }  // namespace hshfit::jobs

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <jobs/common/listener.h>
+#include <jobs/common/option_row.h>
 
 #include <hshfit/stability/stress.h>
 
@@ -25,6 +26,7 @@ struct StressOptions {
     std::uint64_t seed = brdfs::RandomCasesOptions{}.seed;  ///< of the random projections
     std::vector<std::string> of = {};  ///< models and formats whose projections are kept; all
 };
+OptionRows<StressOptions> stressOptions();
 
 /// The accuracy of each computation by degree, order and width, with its files in the folder
 /// `output` (stability::writeStress) unless that is empty. Throws UsageError, InputError and

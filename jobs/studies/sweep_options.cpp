@@ -15,7 +15,7 @@ std::vector<Word> constraintWords() {
     return {{"none"}, {"non-negative"}, {"energy-preserving"}, {"both"}};
 }
 
-constexpr OptionRow rows[] = {
+constexpr OptionRow sweepRows[] = {
     OptionRow{"forms", at<&SweepOptions::forms>, "Of outgoing, basis, halfway (default: all)"}
         .takes({formWords, Syntax::list}),
     OptionRow{"bases", at<&SweepOptions::bases>,
@@ -70,7 +70,7 @@ std::vector<std::string> basisNames(const std::vector<std::string>& asked) {
 }  // namespace
 
 OptionRows<SweepOptions> sweepOptions() {
-    return {rows};
+    return {sweepRows};
 }
 
 tradeoff::Sweep SweepOptions::sweep() const {

@@ -10,7 +10,7 @@
 
 namespace hshfit::jobs {
 
-/// What a trade-off tries, as words; empty: the sweep's own.
+/// The forms that a trade-off tries, as words; empty: the sweep's own.
 struct SweepOptions {
     std::vector<std::string> forms, bases, outgoing, halfway, precisions, splits, windows,
         constraints;

@@ -44,6 +44,28 @@ std::string pairsCsv(const PairSample& pairs, const Brdf& brdf) {
     return csv;
 }
 
+gpu::DeviceChoice deviceFrom(const std::string& text) {
+    using Device = gpu::DeviceChoice::Kind;
+    if (text.empty() || text == "any") return {};
+    if (text == "gpu") return {.kind = Device::gpu};
+    if (text == "software") return {.kind = Device::software};
+    return {.name = text};
+}
+
+tradeoff::TradeoffOptions measurementOf(const TradeoffOptions& options) {
+    tradeoff::TradeoffOptions how = options.measurement;
+    how.sweep = options.sweep.sweep();
+    if (options.maxBytes) how.maxBytes = static_cast<std::size_t>(*options.maxBytes);
+    if (options.maxNanoseconds) how.maxNanoseconds = *options.maxNanoseconds;
+    how.projection.maxEvaluations = static_cast<std::size_t>(options.maxEvaluations);
+    if (options.gpu) how.gpu = deviceFrom(options.device);
+    if (!options.gpu && !options.device.empty())
+        throw UsageError(fmt::format("{} names what {} runs on: add it",
+                                     Setting{"TradeoffOptions::device"},
+                                     Setting{"TradeoffOptions::gpu"}));
+    return how;
+}
+
 void measureAll(MeasuredTradeoffs& result, const TradeoffOptions& options, FileSet* files,
                 const Listener& listener) {
     const PairSample pairs = pairsFor(options);
@@ -55,7 +77,7 @@ void measureAll(MeasuredTradeoffs& result, const TradeoffOptions& options, FileS
                 files->write(std::filesystem::absolute(options.writePairs).string(),
                              pairsCsv(pairs, *brdf));
             }
-            tradeoff::TradeoffOptions how = options.measurement;
+            tradeoff::TradeoffOptions how = measurementOf(options);
             how.progress = listener.part(spec);
             result.trades.push_back(measure(*brdf, pairs, how, open));
         } catch (const OutputError&) {
@@ -71,6 +93,7 @@ void measureAll(MeasuredTradeoffs& result, const TradeoffOptions& options, FileS
 
 MeasuredTradeoffs measureTradeoffs(const std::vector<std::string>& specs, const std::string& output,
                                    const TradeoffOptions& options, const Listener& listener) {
+    measurementOf(options);  // a word that is none fails before any file is opened
     MeasuredTradeoffs result{.specs = expandInputs(specs)};
     if (!options.writePairs.empty() && result.specs.size() > 1) {
         throw UsageError(fmt::format("{} holds the values of one BRDF: give one SPEC",

@@ -2,22 +2,33 @@
 
 #include <jobs/common/inputs.h>
 #include <jobs/common/listener.h>
+#include <jobs/studies/sweep_options.h>
 
 #include <hshfit/tradeoff/tradeoff.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace hshfit::jobs {
 
 struct TradeoffOptions {
-    tradeoff::TradeoffOptions measurement = {};  ///< its `progress` is not called: the listener is
-    std::string pairs = {};  ///< CSV of pairs (readPairSample); empty: spread pairs
-    int pairCount = 32768;   ///< of spread pairs, about
+    /// Without what the members below state; its `progress` is not called: the listener is.
+    tradeoff::TradeoffOptions measurement = {};
+    SweepOptions sweep = {};
+    std::optional<double> maxBytes = {};        ///< of a form
+    std::optional<double> maxNanoseconds = {};  ///< of a pair
+    double maxEvaluations = static_cast<double>(ProjectionOptions{}.maxEvaluations);
+    bool gpu = false;         ///< time the shaders of the fronts' forms
+    std::string device = {};  ///< any, gpu, software, or a part of its name; takes `gpu`
+    std::string pairs = {};   ///< CSV of pairs (readPairSample); empty: spread pairs
+    int pairCount = 32768;    ///< of spread pairs, about
     /// CSV to write: the pairs, their weights and the values of the one BRDF; empty: none.
     std::string writePairs = {};
     bool rgb = false;  ///< wavelengths as linear Rec. 709
 };
+/// Without those of the sweep.
+OptionRows<TradeoffOptions> tradeoffOptions();
 
 struct MeasuredTradeoffs {
     std::vector<std::string> specs;               ///< with folders expanded

@@ -20,9 +20,9 @@ namespace hshfit::cli {
 namespace {
 
 /// Options and arguments of free text that name no file.
-const std::set<std::string> plainTexts{"--bandwidth",
+const std::set<std::string> plainTexts{"--axis",
+                                       "--bandwidth",
                                        "--calibration",
-
                                        "--camera",
                                        "--components",
                                        "--detector-aperture",
@@ -37,7 +37,6 @@ const std::set<std::string> plainTexts{"--bandwidth",
                                        "--font-size",
                                        "--halfway",
                                        "--incidence-zero",
-
                                        "--method",
                                        "--name",
                                        "--normal",

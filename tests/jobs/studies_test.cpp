@@ -126,11 +126,11 @@ TEST_F(Studies, GaussiansWritesTheMixtureOfTheProgram) {
 TEST_F(Studies, TradeoffWritesTheFilesOfTheProgram) {
     jobs::TradeoffOptions options{.pairCount = 512, .writePairs = path("job.csv")};
     options.measurement.timing = false;
-    options.measurement.sweep.kinds = {Representation::Kind::outgoing};
-    options.measurement.sweep.bases = {"hsh"};
-    options.measurement.sweep.orders = {2, 3};
-    options.measurement.sweep.outgoing = {"4"};
-    options.measurement.sweep.ranks = {0};
+    options.sweep.forms = {"outgoing"};
+    options.sweep.bases = {"hsh"};
+    options.sweep.orders = {2, 3};
+    options.sweep.outgoing = {"4"};
+    options.sweep.ranks = {0};
     const std::string spec = "ggx:alpha=.4";
     const jobs::MeasuredTradeoffs measured = jobs::measureTradeoffs({spec}, path("job"), options);
     ASSERT_EQ(measured.trades.size(), 1u);

@@ -1,0 +1,26 @@
+#include "plan.h"
+
+#include <jobs/common/option_words.h>
+
+namespace hshfit::jobs {
+namespace {
+
+using options::at;
+using plan::PlanOptions;
+
+constexpr OptionRow planRows[] = {
+    OptionRow{"bases", at<&PlanOptions::bases>, "Bases to try, orthonormal ones"}.takes(
+        {basisLists, Syntax::list}),
+    OptionRow{"max-order", at<&PlanOptions::maxOrder>, "Bands to try"}.within(bounds::planOrder),
+    OptionRow{"by-time", at<&PlanOptions::byTime>,
+              "Of the forms within the budget, the fastest instead of the smallest; what is "
+              "measured may differ between runs"},
+};
+
+}  // namespace
+
+OptionRows<plan::PlanOptions> planOptions() {
+    return {planRows};
+}
+
+}  // namespace hshfit::jobs
