@@ -53,7 +53,7 @@ struct Batch {
         for (double& value : in) value = normal(engine);
     }
 
-    /// Of the first vector.
+    /// The error of the first vector.
     double error(int order) const {
         double worst = 0, norm = 0;
         for (int l = 0; l < order; ++l) {

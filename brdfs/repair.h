@@ -32,7 +32,7 @@ struct RepairCount {
     std::string_view name;
     std::uint64_t changed = 0;  ///< values
     std::uint64_t left = 0;     ///< values that it could not repair
-    /// Of `holes`: the check against covered pairs, and the values that were filled by 10 degrees
+    /// For `holes`: the check against covered pairs, and the values that were filled by 10 degrees
     /// of the larger of both polar angles.
     std::optional<FillCheck> check = {};
     std::array<std::uint64_t, 9> byAngle = {};

@@ -25,7 +25,7 @@ Json lightingAnswer(const jobs::LightingExport& exported, const std::string& fol
     return answer;
 }
 
-/// Of a prefiltered environment the error over all turns of the light.
+/// The error of a prefiltered environment over all turns of the light.
 std::string turnedText(const Json& error) {
     return error.contains("turned_l2")
                ? fmt::format("; over all turns {:.4f}", error["turned_l2"].get<double>())

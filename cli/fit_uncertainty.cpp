@@ -59,7 +59,7 @@ std::string errorTable(const Document& uncertainty) {
                     correlated ? " correlated" : "", scans ? "    by scan   df" : "",
                     bootstrap ? "  bootstrap" : "");
     for (const Document& own : uncertainty["parameters"]) {
-        // Of scans there may be hundreds; FIT.json has them all.
+        // There may be hundreds of scans; FIT.json has them all.
         if (isOfScan(own)) continue;
         lines +=
             fmt::format("  {:<24} {:>2} {:>10} {:>10}", own["name"].get<std::string>(),

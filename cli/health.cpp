@@ -176,10 +176,9 @@ std::string healthText(const Json& document) {
     for (const Json& axis : document.value("axes", Json::array())) {
         text += factLine("sampled " + axis["name"].get<std::string>(), axisText(axis));
     }
-    // Of a reciprocal BRDF both are the same numbers.
+    // Both are the same numbers for a reciprocal BRDF.
     const bool both = document["reflectance"] != document["albedo"];
-    // Of a transmission, the light of one direction that comes through, and the radiance that
-    // comes through under uniform light.
+    // A transmission lets light of one direction through, and shows radiance under uniform light.
     const bool through = document.contains("side");
     const std::string share = through ? "transmittance" : "reflectance",
                       albedo = through ? "radiance" : "albedo";

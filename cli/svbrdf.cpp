@@ -131,7 +131,7 @@ std::string textOf(const jobs::Svbrdf& done) {
     for (std::size_t level = 0; level < done.levels.size(); ++level) text += levelText(done, level);
     std::size_t materials = 0;
     for (const std::string& file : done.files) {
-        // Of the materials of the form halfway the first stands for all.
+        // The first of the materials of the form halfway stands for all.
         if (file.find("/material_") != std::string::npos && ++materials > 1) continue;
         text += fmt::format("  {}\n", file);
     }

@@ -21,7 +21,7 @@ namespace hshfit::brdfs::HWY_NAMESPACE {
 /// over visible normals (Heitz 2018, JCGT 7(4)).
 template <class X, class N, class Z>
 HWY_INLINE X facetAlbedoOf(const X& alpha, const N& ior, Z zo) {
-    // Of one half: the other is its mirror image.
+    // Over one half: the other is its mirror image.
     constexpr int rings = 16, azimuths = 10;
     const Z xo = sqrt(1.0 - zo * zo);
     const auto lambda = [&](const X& x2, const X& z) HWY_ATTR {

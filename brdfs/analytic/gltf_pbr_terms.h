@@ -97,7 +97,7 @@ struct GltfPbrFormula {
     static N widthOf(const N& roughness) {
         return max(N(1e-4), roughness * roughness);
     }
-    /// Of one channel; gltf_pbr.cpp puts in the largest of all.
+    /// The shape of one channel; gltf_pbr.cpp puts in the largest of all.
     template <class N>
     static GltfPbrShape<N> shape(const Values<N>& p) {
         const N alpha = widthOf(p("roughnessFactor")),

@@ -8,7 +8,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace hshfit::brdfs::HWY_NAMESPACE {
 
-/// Of the fuzz for one wo: its albedo, the matrix, and the azimuth of wo. MaterialX's fits to the
+/// The fuzz for one wo: its albedo, the matrix, and the azimuth of wo. MaterialX's fits to the
 /// authors' tables.
 template <class T>
 struct OpenpbrFuzz {

@@ -137,7 +137,7 @@ std::string holding(const std::string& spec, const HeldParameter& held) {
                        held.value);
 }
 
-/// Of the parts of a fit, the parameters that may stay at their defaults, one after another.
+/// The parameters of the parts of a fit that may stay at their defaults, one after another.
 std::vector<HeldParameter> undecided(const Model& model, const FitSamples& samples, Trials& trials,
                                      TriedParts current, double leastGain) {
     std::vector<HeldParameter> held;

@@ -53,7 +53,7 @@ Folds foldsOf(const FitSamples& samples, const Groups& rings) {
     return folds;
 }
 
-/// Of all samples but these.
+/// All samples but these.
 FitSamples without(const FitSamples& samples, const std::vector<std::size_t>& fold) {
     std::vector<std::size_t> rest;
     std::size_t at = 0;

@@ -27,7 +27,7 @@ Matrix correlatedSpread(
     const Matrix ofChannels = correlationOfChannels(samples);
     Matrix result = Matrix::Zero(at(n), at(n));
     for (const std::vector<std::size_t>& block : correlatedBlocks(samples)) {
-        // Of each sample of the block: its rows, and these mixed among the channels.
+        // The rows of each sample of the block, and the same mixed among the channels.
         std::vector<Matrix> own, mixed;
         for (const std::size_t k : block) {
             own.emplace_back(Matrix::Zero(at(channels), at(n)));

@@ -43,7 +43,7 @@ public:
     std::size_t pivot() const { return pivot_; }
     const std::vector<double>& x() const { return exchanged_; }
 
-    /// Of the exchanged variables: the reported value has no bounds of its own.
+    /// Bounds of the exchanged variables: the reported value has none of its own.
     Bounds bounds() const {
         Bounds bounds{problem_.model().lower(), problem_.model().upper()};
         bounds.lower[pivot_] = -std::numeric_limits<double>::max();

@@ -19,7 +19,7 @@ bool namesMetals(std::string_view model);
 /// coefficients of the laws, and by the chain rule in the parameters that are reported. Bootstrap
 /// draws start at the minimum.
 ///
-/// Of the instrument, values are averaged over apertures and the slit, as in fitWithInstrument, and
+/// Values are averaged over the instrument's apertures and slit, as in fitWithInstrument, and
 /// a stated offset and dark signal are taken away; with more of it, it throws UsageError.
 ///
 /// Throws UsageError for data without wavelengths, for laws that the model does not take, and with

@@ -88,8 +88,8 @@ struct FitResult {
     std::vector<FittedWavelength> spectrum;  ///< of data with wavelengths, in their order
     std::vector<FittedLaw> laws;             ///< only with FitOptions::dispersion or a metal
     std::vector<FittedParameter> parameters;
-    /// Of parameters with a standard error, 0 otherwise: [n * n]. Channels that were fitted apart
-    /// do not correlate.
+    /// Correlations of parameters with a standard error, 0 otherwise: [n * n]. Channels that were
+    /// fitted apart do not correlate.
     std::vector<double> correlations;
     /// Sets of parameters that the data do not tell apart, by name and channel.
     std::vector<std::vector<std::string>> ambiguous;

@@ -83,7 +83,7 @@ struct FitSamples {
 
     std::size_t size() const { return wo.size(); }
     double value(std::size_t channel, std::size_t k) const { return values[channel * size() + k]; }
-    /// Of a value in the loss: that of its sample, over the square of its uncertainty if stated.
+    /// Weight of a value in the loss: its sample's, over the square of its uncertainty if stated.
     double weight(std::size_t channel, std::size_t k) const {
         if (sigmas.empty()) return weights[k];
         const double sigma = sigmas[channel * size() + k];

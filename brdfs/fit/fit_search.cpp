@@ -186,7 +186,7 @@ void moveTo(const std::vector<double>& values, const ParametricSum& sum, std::ve
         if (!std::isnan(values[j])) u[j] = sum.shapes()[j].toScale(values[j]);
 }
 
-/// Of pixels, the first iterations of a search, and the searches that go on after them.
+/// For pixels: the first iterations of a search, and the searches that go on after them.
 constexpr int heatIterations = 25;
 constexpr std::size_t heatWinners = 8;
 
@@ -212,7 +212,7 @@ std::vector<Minimum> coarseMinima(const FitProblem& problem, bool linear,
     });
     std::ranges::stable_sort(candidates, byCost);
     candidates.resize(std::min(candidates.size(), starts));
-    // Of measured samples and cells, fits keep the minima that they had in earlier versions.
+    // Fits to measured samples and cells keep the minima that they had in earlier versions.
     const SampleOrigin origin = problem.samples().origin;
     const bool pixels = origin == SampleOrigin::pixels;
     const bool lifts = !linear && (origin == SampleOrigin::nodes || pixels);
@@ -268,7 +268,7 @@ enum class Route { direct, byPart, byTwoParts };
 
 Route routeOf(const FitSamples& samples) {
     if (samples.size() > manySamples) return Route::byTwoParts;
-    // Of measured samples and cells, fits keep the minima that they had in earlier versions.
+    // Fits to measured samples and cells keep the minima that they had in earlier versions.
     const bool nodes = samples.origin == SampleOrigin::nodes && samples.size() > 4 * coarseCount;
     return samples.fewer || nodes ? Route::byPart : Route::direct;
 }

@@ -14,7 +14,7 @@ struct Bounds {
     std::vector<double> lower, upper;
 };
 
-/// Of x = shapes' u, then linear parameters (FitProblem::joint).
+/// Bounds of x: the shapes' u, then linear parameters (FitProblem::joint).
 Bounds jointBounds(const ParametricSum& sum, std::size_t channels);
 
 /// The least minimum that the searches of a fit found, with the scale of the robust kernel.

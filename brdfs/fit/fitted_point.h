@@ -26,9 +26,9 @@ struct FittedChannel {
 struct FittedPoint {
     bool isotropic = true;  ///< as the samples were
     std::vector<FittedChannel> channels;
-    /// Of the coefficients, [n * n]: by scan, or else the sandwich. 0 for what a bound holds;
-    /// without directions in which no sample changes, so that f at the samples has its variance
-    /// also where the data do not tell parameters apart.
+    /// Covariance of the coefficients, [n * n]: by scan, or else the sandwich. 0 for what a bound
+    /// holds; without directions in which no sample changes, so that f at the samples has its
+    /// variance also where the data do not tell parameters apart.
     std::vector<double> covariance;
     /// Degrees of freedom of its parts, each of consecutive coefficients; none for more than 20,000
     /// values without scans, where they hardly matter, and for sums of f.

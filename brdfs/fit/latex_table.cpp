@@ -35,8 +35,8 @@ std::string unitOf(const std::string& term, const std::string& key) {
     return row->help.find("radians") != row->help.npos ? "rad" : "1";
 }
 
-/// Of a coefficient of a law over the wavelength in micrometres, "ior.B" or "ior.C1"; none of other
-/// parameters.
+/// The unit of a coefficient of a law over the wavelength in micrometres, "ior.B" or "ior.C1"; none
+/// for other parameters.
 std::optional<std::string> unitOfLaw(const FitResult& result, const std::string& parameter) {
     for (const FittedLaw& law : result.laws) {
         if (!parameter.starts_with(law.parameter + ".")) continue;
@@ -64,7 +64,7 @@ std::string unitOf(const FitResult& result, const std::string& name) {
     return "1";
 }
 
-/// Of the instrument, an offset and a dark signal are in the unit of f, the others are shares.
+/// An offset and a dark signal of the instrument are in the unit of f, its other terms are shares.
 std::string unitOf(const FitResult& result, const FittedParameter& parameter) {
     if (!parameter.instrument) return unitOf(result, parameter.name);
     return parameter.name == "offset" || parameter.name == "dark" ? "sr$^{-1}$" : "1";

@@ -14,7 +14,7 @@ struct LtcLobe {
     double error = 0;
     /// Half the integral of |f cos - magnitude D| over the magnitude: the share that is misplaced.
     double misplaced = 0;
-    /// Of magnitude and Fresnel part, over the magnitude: their change when the quadrature last
+    /// The change of magnitude and Fresnel part, over the magnitude, when the quadrature last
     /// became half as dense again. Beyond 2e-4 only for narrow lobes close to grazing.
     double uncertainty = 0;
     int iterations = 0;  ///< of Ceres, over all rounds

@@ -68,7 +68,7 @@ public:
         return true;
     }
 
-    /// Of the last derivatives: the largest component of the gradient that no bound holds.
+    /// The largest component of the last gradient that no bound holds.
     double pull() const { return pull_; }
 
 private:

@@ -55,7 +55,7 @@ struct StudiedValues {
     bool whitened = false;    ///< Uncertainty::whitened
     std::size_t scans = 0;
     std::size_t scanParameters = 0;  ///< Uncertainty::scanParameters
-    /// Of terms beside the values, such as priors: squares, number, and sum of leverages.
+    /// Terms beside the values, such as priors: squares, number, and sum of leverages.
     double otherSquares = 0, otherCount = 0, otherRank = 0;
 };
 

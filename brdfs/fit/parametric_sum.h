@@ -75,8 +75,8 @@ public:
     /// Indices of the shapes of a term, consecutive, and of its linear parameters, likewise.
     const std::vector<std::size_t>& shapesOfTerm(std::size_t term) const;
     const std::vector<std::size_t>& linearsOfTerm(std::size_t term) const;
-    /// Of one term, at values (not u) of all shapes, by its model's formula, with derivatives by
-    /// its shapes if asked for. Null: by differences of Brdf::eval.
+    /// Columns of one term, at values (not u) of all shapes, by its model's formula, with
+    /// derivatives by its shapes if asked for. Null: by differences of Brdf::eval.
     std::unique_ptr<ModelColumns> formulaColumns(std::size_t term, std::span<const double> shapes,
                                                  bool derivatives) const;
     bool byFormula(std::size_t term) const { return terms_[term].byFormula; }
@@ -85,7 +85,7 @@ public:
     /// Whether every term vanishes where its linear parameters are 0.
     bool scalable() const { return scalable_; }
 
-    /// Of one term, at values (not u) of all shapes.
+    /// Columns of one term, at values (not u) of all shapes.
     Columns columnsOf(std::size_t term, std::span<const double> shapes) const;
 
     /// The specification with values filled in. `shapes[c]` for each channel c (one: shared),

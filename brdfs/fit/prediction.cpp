@@ -81,7 +81,7 @@ Eigen::MatrixXd partOf(const std::vector<double>& covariance,
     return part;
 }
 
-/// Of the variances of f without what is common to all samples.
+/// Degrees of freedom of the variances of f without what is common to all samples.
 std::vector<double> degreesOfSamples(const FittedPoint& point, const Gradients& g) {
     for (const FittedPoint::Freedom& part : point.freedom) {
         const Eigen::Index count = part.of->count();
@@ -101,7 +101,7 @@ std::vector<double> degreesOfSamples(const FittedPoint& point, const Gradients& 
     return std::vector<double>(static_cast<std::size_t>(g.slopes.rows()), unlimited);
 }
 
-/// Of the variances of f (Welch-Satterthwaite).
+/// Degrees of freedom of the variances of f (Welch-Satterthwaite).
 std::vector<double> degreesOf(const FittedPoint& point, const Gradients& g,
                               const Eigen::VectorXd& variance) {
     std::vector<double> degrees = degreesOfSamples(point, g);
@@ -207,7 +207,7 @@ double simultaneousFactor(const FitResult& fit, std::span<const DirectionPair> p
                           double probability, std::uint64_t seed, std::size_t draws) {
     const auto n = static_cast<Eigen::Index>(std::llround(std::sqrt(fit.point.covariance.size())));
     const Eigen::Map<const Eigen::MatrixXd> covariance(fit.point.covariance.data(), n, n);
-    // Of correlations, so that coefficients of any unit keep their digits.
+    // As correlations, so that coefficients of any unit keep their digits.
     Eigen::VectorXd scale = covariance.diagonal().cwiseMax(0).cwiseSqrt();
     Eigen::VectorXd inverse = scale;
     for (double& s : inverse) s = s > 0 ? 1 / s : 0;

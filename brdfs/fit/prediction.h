@@ -21,7 +21,7 @@ struct Prediction {
     /// Degrees of freedom of their variances (scan_spread.h), 1 and more: few where few samples, or
     /// scans, decide. Infinite where they are not known (FittedPoint::freedom).
     std::vector<double> degrees;
-    /// Of fits to resampled data, where the fit has them: their standard deviation and percentiles.
+    /// Standard deviation and percentiles of fits to resampled data, where the fit has them.
     struct Bootstrap {
         std::vector<double> errors;
         std::vector<Interval> within68, within95;

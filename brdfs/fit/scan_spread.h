@@ -48,7 +48,8 @@ public:
     /// scanSpread of the scans.
     Eigen::MatrixXd spread() const { return scanSpread(scans_, inverse_); }
     std::size_t scanCount() const { return scans_.size(); }
-    /// Of combinations of the coefficients, the rows of `of`; 0 where the variance is 0.
+    /// Degrees of freedom of combinations of the coefficients, rows of `of`; 0 where the variance
+    /// is 0.
     std::vector<double> degrees(const Eigen::MatrixXd& of) const;
 
 private:

@@ -13,8 +13,8 @@ struct StatedError {
     double error = 0;
     /// "by scan", "correlated", "normal" or "sandwich"; with a budget the route of its first row.
     std::string_view route;
-    /// Of its variance: effective ones of the budget; those by scan; of the stated uncertainties
-    /// infinite; else values less parameters.
+    /// Degrees of freedom of its variance: effective ones of the budget; those by scan; infinite
+    /// for stated uncertainties; else values less parameters.
     double degrees = 0;
     double factor = 0;  ///< Student's, of Budget::probability
 

@@ -31,8 +31,8 @@ struct ParameterUncertainty {
     /// With the stated correlations (SigmaCorrelation) in C: (J^T C^-1 J)^-1, or (J^T W J)^-1 J^T W
     /// C W J (J^T W J)^-1 of a fit that weights values as independent ones.
     std::optional<double> correlated = {};
-    /// Of `scans`: degrees of freedom of its variance (scanDegrees), which are those of the scans
-    /// that determine the parameter; none for the scale of a scan.
+    /// Degrees of freedom of the variance by `scans` (scanDegrees), from the scans that determine
+    /// the parameter; none for the scale of a scan.
     std::optional<double> scanDegrees;
     /// Standard deviation and percentiles of fits to resampled data.
     struct Bootstrap {
@@ -64,11 +64,12 @@ struct Uncertainty {
     bool whitened = false;             ///< and the fit weights by it; chi-square is r^T C^-1 r
     double chiSquare = 0;              ///< sum of weighted squared residuals
     std::size_t degreesOfFreedom = 0;  ///< values less determined parameters
-    /// Of a chi-square as large; only if uncertainties were stated, and correlations are in it.
+    /// The probability of a chi-square as large; only if uncertainties were stated, and
+    /// correlations are in it.
     std::optional<double> probability;
     std::size_t scans = 0;  ///< 0: every sample on its own
-    /// Of one channel. Where there are no more scans than these, there are no errors by scan, and
-    /// the errors that a fit states are those of the stated uncertainties (`normal`).
+    /// Parameters of one channel. Where there are no more scans than these, there are no errors by
+    /// scan, and a fit states errors by the stated uncertainties (`normal`).
     std::size_t scanParameters = 0;
     std::vector<ParameterUncertainty> parameters;  ///< in the order of FitResult::parameters
     std::vector<double> covariance;      ///< by the route `normal`, [n * n]; 0 where there is none

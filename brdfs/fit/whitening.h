@@ -19,9 +19,9 @@ struct Cholesky {
     explicit Cholesky(const Eigen::MatrixXd& matrix);
 };
 
-/// Of the errors at the wavelengths of the samples; the identity where none is stated.
+/// Correlation of the errors at the wavelengths of the samples; the identity where none is stated.
 Eigen::MatrixXd correlationOfChannels(const FitSamples& samples);
-/// Of the errors of two samples of a scan at one wavelength.
+/// Correlation of the errors of two samples of a scan at one wavelength.
 double correlationOfSamples(const FitSamples& samples, std::size_t j, std::size_t k);
 /// Indices of the samples whose errors are correlated with one another.
 std::vector<std::vector<std::size_t>> correlatedBlocks(const FitSamples& samples);

@@ -26,7 +26,7 @@ public:
     bool isDegree() const { return name_ == "dolp"; }
     /// The places in a matrix, row after row, of the elements that it is made of.
     const std::vector<std::size_t>& places() const { return places_; }
-    /// Of the values at these places. M_00 is at least 0.
+    /// The element from the values at these places. M_00 is at least 0.
     double value(const double* values) const;
 
 private:

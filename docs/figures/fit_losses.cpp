@@ -249,8 +249,8 @@ struct Judged {
     PictureErrors errors = {};
 };
 
-/// Of each loss: the mean of an error, the largest and of which data, and the number of data that
-/// it describes best.
+/// The mean error of each loss, the largest and its data, and the number of data that it describes
+/// best.
 struct Summary {
     double mean = 0, worst = -1;
     std::string worstData;

@@ -16,9 +16,9 @@ struct BatchProgram;
 class Costs {
 public:
     Costs() = default;
-    /// Of the times.csv that a merge of earlier results wrote (docs/reference/batch.md): items get
-    /// the measured processor time of their name or, if there is none, the mean of their class or
-    /// their wider class. Throws InputError.
+    /// Costs from the times.csv that a merge of earlier results wrote (docs/reference/batch.md):
+    /// items get the measured processor time of their name or, if there is none, the mean of their
+    /// class or their wider class. Throws InputError.
     static Costs fromFile(const std::string& path);
 
     double of(const BatchItem& item, const BatchProgram& program) const;

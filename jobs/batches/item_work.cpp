@@ -57,7 +57,7 @@ std::string messageOf(std::string text) {
     return printable(text.starts_with(program) ? text.substr(program.size()) : text);
 }
 
-/// Of this process and of those that it started and that have ended.
+/// Processor time of this process and of the ended ones that it started.
 double cpuSeconds() {
     const auto seconds = [](const timeval& time) {
         return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);

@@ -19,7 +19,7 @@ struct BatchCommand {
     Output output = Output::none;
     std::string_view outputName = {};
     bool comparesTwo = false;  ///< it takes a second input
-    /// Of an ordinary item, in seconds; only ratios between commands count (costs.h).
+    /// Cost of an ordinary item, in seconds; only ratios between commands count (costs.h).
     double cost = 1;
 };
 

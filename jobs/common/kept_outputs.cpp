@@ -45,7 +45,7 @@ std::string sumOf(const std::string& path) {
                                   Setting{"FileSet::force"}));
 }
 
-/// Of files that state the key.
+/// The state of files that state the key.
 Stood stoodAs(const MadeFrom& made, const fs::path& folder) {
     std::error_code error;
     for (std::size_t k = 0; k < made.files.size(); ++k) {
@@ -71,7 +71,7 @@ Stood standingOf(const std::string& path, const std::string& key) {
     return stoodAs(*made, fs::path(path).parent_path());
 }
 
-/// Of a folder: its files that state a key decide.
+/// The state of a folder: its files that state a key decide.
 Stood standingOfFolder(const fs::path& folder, const std::string& key) {
     std::error_code error;
     std::optional<std::string> other;

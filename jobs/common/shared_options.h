@@ -10,7 +10,7 @@ constexpr OptionRow rgbRow(Member value) {
     return {"rgb", value, "Turn wavelengths into linear Rec. 709 (CIE 1931 2 degrees, D65)"};
 }
 
-/// Of quadrature; 0: as the BRDF asks for.
+/// The tolerance of quadrature; 0: as the BRDF asks for.
 constexpr OptionRow toleranceRow(Member value) {
     const OptionRow row{
         "tolerance", value,

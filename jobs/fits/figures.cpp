@@ -30,7 +30,7 @@ std::vector<PrintFigure> ofSamples(const brdfs::PlottedModel& model, const Figur
     return brdfs::sampleFigures(model, cuts, options.style);
 }
 
-/// Of the band that holds the true f with 95 % at each pair.
+/// Half widths of the band that holds the true f with 95 % at each pair.
 std::vector<double> halfWidths(const brdfs::FitResult& result,
                                std::span<const DirectionPair> pairs) {
     brdfs::Prediction prediction = brdfs::predict(result, pairs, false);

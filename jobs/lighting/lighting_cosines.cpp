@@ -95,7 +95,7 @@ double chooseEvenShare(const Brdf& brdf, std::span<const lighting::LobeNodes> no
     return best;
 }
 
-/// Of a BRDF whose lobes are their own mirror images.
+/// The table of a BRDF whose lobes are their own mirror images.
 lighting::CosineTable planeTable(const Brdf& brdf, lighting::ElevationRows rows) {
     std::vector<lighting::LobeNodes> nodes;
     for (std::size_t k = 0; k < rows.count; ++k)

@@ -11,7 +11,7 @@
 namespace hshfit::jobs {
 namespace {
 
-/// Of one thread, over a few points.
+/// The time of one thread, over a few points.
 double lightingIntegrationTime(const Brdf& brdf, const SurfacePoints& points, const View& view,
                                const DirectIntegral& light, double tolerance) {
     constexpr std::size_t timed = 20;

@@ -27,7 +27,8 @@ struct LightingError {
     std::string light, model;
     PictureDifference difference = {};
     double flip = 0;  ///< sphereFlip
-    /// Of a prefiltered environment, over all turns of the light (lighting::turnedError).
+    /// For a prefiltered environment: the error over all turns of the light
+    /// (lighting::turnedError).
     std::optional<double> turned = {};
     double reference = 0;   ///< estimated relative error of direct integration
     std::size_t bytes = 0;  ///< of the table

@@ -47,7 +47,7 @@ struct MatrixOptions {
     std::optional<Rotation> rotation = {};
     /// Both bases with the Condon-Shortley sign, as in the source papers.
     bool condonShortley = false;
-    /// Of the integral of a change of basis; none: the inner product of TO.
+    /// Weight of the integral of a change of basis; none: the inner product of TO.
     std::optional<Basis::Inner> weight = {};
 };
 

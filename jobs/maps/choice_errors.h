@@ -20,7 +20,7 @@ public:
     TexelPairErrors ofTexels() const;  ///< all coefficients
     TexelPairErrors of(const LowRank& lowRank) const;
     TexelPairErrors of(const ClusterEncoder& clusters) const;
-    /// Of any other form: `at` opens the texel at a place.
+    /// The errors of any other form: `at` opens the texel at a place.
     TexelPairErrors of(const std::function<std::unique_ptr<Brdf>(const TexelPlace&)>& at) const;
 
 private:

@@ -39,7 +39,7 @@ std::vector<double> factorsOf(const brdfs::FacetNormals& normals) {
 
 }  // namespace
 
-/// Of column i to column j, over the texels where either is not 0.
+/// The ratio of column i to column j, over the texels where either is not 0.
 struct FacetSurface::ColumnRatio {
     double first = 0;  ///< in the order of texels
     double low = INFINITY, high = -INFINITY;
@@ -66,7 +66,7 @@ struct FacetSurface::ColumnRatio {
         low = std::min(low, ratio);
         high = std::max(high, ratio);
     }
-    /// Of the rows that follow.
+    /// Takes up the rows that follow.
     void add(const ColumnRatio& later) {
         if (!known()) first = later.first;
         low = std::min(low, later.low);
@@ -226,7 +226,7 @@ void FacetSurface::findCorners() {
     }
 }
 
-/// Of each interval of nodes the distance of D at its middle from the mean of its ends, relative to
+/// The distance of D at the middle of each interval of nodes from the mean of its ends, relative to
 /// its norm: the largest at the ends and the middle of the other parameter.
 std::vector<double> FacetSurface::intervalErrors(const std::string& model, std::size_t node) const {
     std::vector<LobeNodes> halved = nodes_;
@@ -326,7 +326,7 @@ std::vector<double> FacetSurface::columns(const std::vector<float>& values,
     return out;
 }
 
-/// Of each column to those before it, [column][column], and to 1: black where all are 0.
+/// The ratios of each column to those before it, [column][column], and to 1: black where all are 0.
 std::vector<FacetSurface::ColumnRatio> FacetSurface::columnRatios(const ItemRange& rows,
                                                                   const Listener& listener) {
     const std::size_t count = columnCount(), width = maps_.width();

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t mostParts = 16;
 
-/// Of each material the texel with the least stated error, the first of equals; none: it has none.
+/// The texel of each material with the least stated error, the first of equals; none: it has none.
 std::vector<std::optional<TexelPlace>> nearestTexels(const MaterialMap& map) {
     std::vector<std::optional<TexelPlace>> nearest(map.sidecar().materials());
     std::vector<unsigned> least(nearest.size(), std::numeric_limits<unsigned>::max());

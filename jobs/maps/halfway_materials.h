@@ -24,8 +24,8 @@ struct HalfwayMaterials {
     std::size_t bytes(std::size_t first, std::size_t last) const;  ///< of materials [first, last)
 };
 
-/// Of a written map, whose indices say which texels a material has. Shared out among processes;
-/// each has all. Throws InputError, and NumericError as projectHalfway does.
+/// The materials of a written map, whose indices say which texels a material has. Shared out among
+/// processes; each has all. Throws InputError, and NumericError as projectHalfway does.
 HalfwayMaterials halfwayMaterials(const MaterialMap& map, ParameterMaps& maps,
                                   const HalfwayOrders& orders, Processes& processes,
                                   const Listener& listener);

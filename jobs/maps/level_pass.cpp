@@ -9,7 +9,7 @@ namespace hshfit::jobs {
 namespace {
 
 constexpr std::size_t partsOfProcess = 8;  // 32 were no faster (docs/explanation/svbrdf_scale.md)
-/// Of the level from which the first process goes on alone: 64 MiB of doubles.
+/// Numbers of the level from which the first process goes on alone: 64 MiB of doubles.
 constexpr std::size_t heldNumbers = std::size_t{1} << 23;
 
 }  // namespace

@@ -18,7 +18,7 @@ gpu::Number numberOf(const SvbrdfOptions& options) {
     return number;
 }
 
-/// Of level 0.
+/// The errors of level 0.
 TexelErrors errorsOfEncoder(const TexelEncoder& encoder, const std::vector<float>& linear) {
     const std::size_t n = encoder.linear(), count = linear.size() / n;
     std::vector<float> errors(count);

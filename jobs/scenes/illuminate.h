@@ -14,7 +14,7 @@
 
 namespace hshfit::jobs {
 
-/// Of the records of a radiance cache, unless told otherwise: 256 MB.
+/// Bytes of the records of a radiance cache, unless others are asked for: 256 MB.
 inline constexpr std::size_t defaultCacheBytes = 256'000'000;
 
 struct IlluminateOptions {

@@ -58,9 +58,9 @@ struct RenderedPicture {
     double evaluations = 0;            ///< of f, the mean over the points of integration
     std::size_t cut = 0, notFinite = 0;
     double amplification = 1;  ///< of a difference, in .png files
-    /// Of coefficients and differences, where there is a picture by integration.
+    /// For coefficients and differences, where there is a picture by integration.
     std::optional<PictureDifference> difference = {};
-    /// Of coefficients: root of the share of the energy that they miss (Eq. 15), if it exists.
+    /// For coefficients: root of the share of the energy that they miss (Eq. 15), if it exists.
     std::optional<double> missed = {};
 };
 

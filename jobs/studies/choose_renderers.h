@@ -12,7 +12,7 @@ namespace hshfit::jobs {
 struct Renderer {
     std::string_view name, help;
     std::vector<std::string> kinds;
-    /// Of coefficient files: the target of their export; empty: the file itself.
+    /// For coefficient files: the target of their export; empty: the file itself.
     std::string_view target = {};
 };
 

@@ -43,7 +43,7 @@ struct BrdfInfo {
     std::vector<std::string> warnings = {};  ///< a sentence each, where values contradict the kind
 };
 
-/// Of a source as in openSource. Stored values that are not finite are counted, not refused.
+/// Facts of a source as in openSource. Stored values that are not finite are counted, not refused.
 /// Throws UsageError and InputError.
 BrdfInfo describeSource(const std::string& source, bool rgb = false, const Listener& listener = {});
 
@@ -53,8 +53,8 @@ struct LightInfo {
     std::vector<std::string> warnings = {};
 };
 
-/// Of a sum of lights (parseLights). Invalid pixels are counted, not refused. Throws UsageError and
-/// InputError.
+/// Facts of a sum of lights (parseLights). Invalid pixels are counted, not refused. Throws
+/// UsageError and InputError.
 LightInfo describeLight(const std::string& specification);
 
 }  // namespace hshfit::jobs

@@ -38,7 +38,7 @@ OptionRows<ProjectOptions> projectOptions();
 struct Projected {
     Projection projection;
     std::optional<Representation> kept = {};
-    /// Of the form halfway, as it is in the file: no quadrature tells how far it is from f.
+    /// For the form halfway, as it is in the file: no quadrature tells how far it is from f.
     std::optional<PairSummary> errors = {};
     /// The share of the energy that is captured; none where that is not known.
     std::optional<double> captured = {};

@@ -309,7 +309,7 @@ TEST_P(CatalogRecovery, TheTruthIsAsFarFromTheFitAsTheNoiseImplies) {
     const double above = degrees > 0 ? chiSquareProbability(squares, degrees) : 1;
     fmt::print("{}: {} draws, {} counted, {} missed, chi-square {:.4g} of {}, probability {:.3g}\n",
                testing::PrintToString(GetParam()), count, counted, missed, squares, degrees, above);
-    // Of some fifty cases none falls below by chance.
+    // None of some fifty cases falls below by chance.
     if (degrees > 0) {
         EXPECT_GT(above, 1e-4);
         EXPECT_LT(above, 1 - 1e-4);

@@ -73,7 +73,7 @@ protected:
         result = fit(gatherSamples(*open(path), {}),
                      {.model = "blinn-phong", .loss = Loss::Kind::l2, .perChannel = true});
     }
-    /// Of channel 1 to 3, from the file's own rows and the fitted parameters.
+    /// Residuals of channel 1 to 3, from the file's own rows and the fitted parameters.
     std::vector<double> residuals(std::size_t channel) const {
         const std::string name(1, "RGB"[channel - 1]);
         const double kd = valueOf(result, "kd", name), ks = valueOf(result, "ks", name),

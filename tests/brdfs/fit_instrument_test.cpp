@@ -198,7 +198,7 @@ TEST(Slits, SharesAreThoseOfTheirIntegrals) {
     EXPECT_NEAR(triangle[8 + 2], 4.0 / 6, 1e-14);
     // Beyond the last wavelength f stays.
     EXPECT_NEAR(box[0], 7.0 / 8, 1e-14);
-    // Of a straight line, the middle; the Gaussian's second moment is that of its width.
+    // A straight line keeps its middle; the Gaussian's second moment is given by its width.
     const auto gauss = slitMatrix(parseSlit("gauss:3"), channels);
     double middle = 0;
     for (std::size_t c = 0; c < 4; ++c) {

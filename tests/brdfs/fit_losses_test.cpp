@@ -75,7 +75,7 @@ INSTANTIATE_TEST_SUITE_P(
                     "merl_slices/white-paint.slice", "merl_slices/yellow-matte-plastic.slice"),
     [](const auto& file) { return nameOfFile(file.param); });
 
-/// Of 1, sums of weights over a hemisphere are 2 pi, for each outgoing direction's share.
+/// Sums of weights over a hemisphere are 2 pi where f is 1, for each outgoing direction's share.
 TEST(FitNodes, IntegrateWhatComparisonsIntegrate) {
     const auto brdf = open("ggx:alpha=.3");
     const FitSamples samples = gatherSamples(*brdf, {});

@@ -265,7 +265,7 @@ TEST(PredictionCoverage, BandsHoldTheTruthAtTheirStatedRates) {
     const Coverage shares = coverageOf(2000, 400, true);
     EXPECT_NEAR(shares.within68, 0.68, 0.02);
     EXPECT_NEAR(shares.within95, 0.95, 0.01);
-    // Of the fewest degrees of freedom among the pairs: rather too wide.
+    // By the fewest degrees of freedom among the pairs: rather too wide.
     EXPECT_GT(shares.all95, 0.95 - 0.015);
     EXPECT_LT(shares.all95, 0.98);
 }

@@ -175,7 +175,7 @@ TEST_F(LinearFit, InfluenceIsThatOfFitsWithoutTheSample) {
     EXPECT_NEAR(leverages, Linear::count, rounding);
 }
 
-// Of a linear model, HC3 and CR3 are sums over fits of GSL without a sample, or a scan.
+// HC3 and CR3 of a linear model are sums over fits of GSL without a sample, or a scan.
 TEST_F(LinearFit, SandwichesAreSumsOverFitsWithoutASampleOrAScan) {
     double samplesOut[Linear::count] = {}, scansOut[Linear::count] = {};
     for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -216,7 +216,7 @@ TEST_F(LinearFit, ProfilesAreTheNormalIntervals) {
     }
 }
 
-// Of S equal scans the variance of a mean has S - 1 degrees of freedom (Gosset 1908).
+// The variance of a mean of S equal scans has S - 1 degrees of freedom (Gosset 1908).
 TEST(ScanDegrees, OfTheMeanOfEqualScansAreOneLessThanTheScans) {
     constexpr int scans = 7;
     const Eigen::MatrixXd one = Eigen::MatrixXd::Constant(1, 1, 1);

@@ -41,7 +41,7 @@ std::vector<double> uniform(double low, double high, unsigned seed) {
     return all;
 }
 
-/// Of both signs where asked for, their logarithms uniform.
+/// Scales whose logarithms are uniform, of both signs where asked for.
 std::vector<double> scales(double least, double most, bool bothSigns) {
     std::vector<double> all = uniform(std::log(least), std::log(most), 2);
     for (std::size_t k = 0; k < all.size(); ++k)

@@ -16,7 +16,7 @@ namespace {
 
 const std::string slices = test::sharedFolder() + "/data/merl_slices";
 
-/// Of the materials of a collection of which there is a slice, the medians.
+/// Medians over the materials of a collection of which there is a slice.
 struct Agreement {
     std::size_t materials = 0;
     double error = 0;

@@ -100,7 +100,7 @@ TEST(Utia, continuesLinearlyOrConstantlyPast75Degrees) {
     EXPECT_EQ(evaluate(linear, at(84, 0), wo)[0], 0);
     EXPECT_NEAR(evaluate(constant, at(84, 0), wo)[0], 0.5, 1e-8);
     for (const auto& [name, value] : linear.facts()) {
-        // Of the 13 pairs of rings with theta = 90 deg, the 7 that have it for wi are negative.
+        // 7 of the 13 pairs of rings with theta = 90 deg have it for wi and are negative.
         if (name == "of_these_negative") {
             EXPECT_EQ(std::get<std::int64_t>(value), 7 * 48 * 48 * 3);
         }

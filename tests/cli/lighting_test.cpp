@@ -115,7 +115,7 @@ TEST_F(Lighting, TradeAndPlanChooseAmongTheModels) {
     const Json document = Json::parse(answer.out);
     for (const Json& trade : document["brdfs"][0]["trades"]) {
         front += trade["front"].get<bool>() ? 1 : 0;
-        // Of a diffuse surface, quadrilaterals are exact for both lights, up to direct integration.
+        // Quadrilaterals are exact for a diffuse surface and both lights, up to direct integration.
         if (trade["model"] == "ltc") {
             EXPECT_LT(trade["relative_l2"].get<double>(), 6e-3) << trade;
         }

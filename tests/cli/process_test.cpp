@@ -160,7 +160,7 @@ TEST_F(Process, MessagesAreShortAndKeepBothEnds) {
     EXPECT_TRUE(answer.err.starts_with("hshfit: unknown model 'begin")) << answer.err;
     EXPECT_NE(answer.err.find("…"), std::string::npos);
     EXPECT_EQ(answer.err.back(), '\n');
-    // Of several inputs that fail, each has a line of its own.
+    // Each of several inputs that fail has a line of its own.
     const Answer many =
         run("report a" + std::string(10'000, 'x') + " b" + std::string(10'000, 'x') + " --json");
     std::istringstream lines(many.err);

@@ -118,7 +118,7 @@ void InstrumentProblem::fillBlock(std::span<const double> x, bool derivatives, s
     for (std::size_t k = 0; k < terms; ++k) every[k] = k;
     const Eigen::Map<const Eigen::MatrixXd> mix(readings_.mix.data(), channelCount, channelCount);
     Eigen::MatrixXd own(rowCount, channelCount);
-    // Of one function of all channels: values of the readings of each.
+    // One function of all channels, to values of the readings of each.
     const auto forEach = [&](const double* from, std::size_t column,
                              const std::vector<std::size_t>& linears, auto&& write) {
         for (std::size_t c = 0; c < channels(); ++c) combine(from, column, c, linears, own);
@@ -287,7 +287,7 @@ Equations InstrumentProblem::equations(std::span<const double> x, bool derivativ
     const auto n = static_cast<Eigen::Index>(count_);
     Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(n, n);
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
-    // Of each scan: the products of the slopes by its scale with those by x, and its square.
+    // For each scan: the products of the slopes by its scale with those by x, and its square.
     const bool scales = readings_.instrument.scales;
     Eigen::MatrixXd across =
         Eigen::MatrixXd::Zero(n, scales ? static_cast<Eigen::Index>(scanCount_) : 0);

@@ -26,7 +26,7 @@ struct Readings {
 
 /// The problem at a point, value by value; values are v = channel * samples + sample.
 struct ReadingRows {
-    /// Of each channel: the places in x on which its values depend.
+    /// The places in x on which the values of each channel depend.
     std::vector<std::vector<std::size_t>> places;
     std::vector<double> material;  ///< (1 - stray) F + stray V
     std::vector<double> added;     ///< offset and dark signal
@@ -59,7 +59,7 @@ public:
     const Readings& readings() const { return readings_; }
     const ParametricSum& sum() const { return sum_; }
     std::size_t count() const { return count_; }  ///< of x
-    /// Of x without the zeros of scans, which come last.
+    /// Size of x without the zeros of scans, which come last.
     std::size_t commonCount() const { return commonCount_; }
     std::size_t channels() const { return samples_.channels.count(); }
     std::size_t shapeCount() const { return sum_.shapes().size(); }

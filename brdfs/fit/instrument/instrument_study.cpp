@@ -345,7 +345,7 @@ CommonChanges changesOf(const InstrumentProblem& problem, const WholeSystem& sys
     return changes;
 }
 
-/// Of the errors of all parameters: infinite for those that have none here.
+/// Degrees of freedom of the errors of all parameters: infinite for those that have none here.
 std::vector<double> degreesOf(std::vector<double> degrees, std::size_t count) {
     constexpr double known = std::numeric_limits<double>::infinity();
     for (double& own : degrees) own = own > 0 ? std::max(own, 1.0) : known;

@@ -57,7 +57,7 @@ public:
 
     /// The spread of values with stated correlations (correlated_spread.h), and of priors.
     Matrix correlatedSpread() const;
-    /// Of each scan of the samples, with its own places eliminated.
+    /// The sums of each scan of the samples, with its own places eliminated.
     std::vector<ScanSums> scanSums() const;
     /// The matrix of what scans share, with the places of scans eliminated.
     Matrix reduced() const;

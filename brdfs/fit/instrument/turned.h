@@ -8,8 +8,8 @@
 
 namespace hshfit::brdfs {
 
-/// Of central differences by an angle, radians: rounding, 1e-16 / step, and the third derivative,
-/// step^2, of lobes 0.001 wide are below 1e-4.
+/// Step of central differences by an angle, radians: rounding, 1e-16 / step, and the third
+/// derivative, step^2, of lobes 0.001 wide are below 1e-4.
 constexpr double angleStep = 1e-5;
 
 /// Errors of the zeros of a goniometer's angles, radians, both in the plane of incidence (that of x

@@ -86,7 +86,8 @@ private:
     Census census_;
     std::vector<double> values_;          ///< [channel][outgoing][incident]
     std::vector<unsigned char> missing_;  ///< [outgoing][incident]: NaN or infinite
-    /// Of a transmission: the largest sum with the reflection of the same patch, where it is known.
+    /// For a transmission: the largest sum with the reflection of the same patch, where it is
+    /// known.
     std::optional<double> withReflection_;
 };
 

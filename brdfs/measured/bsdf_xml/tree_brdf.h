@@ -72,7 +72,7 @@ private:
     Census census_;
     std::vector<TensorTree> trees_;       ///< one, Y, u' and v', or one a wavelength
     std::vector<unsigned char> missing_;  ///< leaves of the first that are NaN or infinite
-    /// Of a transmission: the largest sum with the reflection of the same cell, where it is known.
+    /// For a transmission: the largest sum with the reflection of the same cell, where it is known.
     std::optional<double> withReflection_;
 };
 

@@ -16,8 +16,8 @@ struct AltaCoordinates {
     bool reciprocal;       ///< unchanged when wi and wo are exchanged
     bool isotropic;        ///< unchanged when both turn about the normal
     bool mirrorSymmetric;  ///< unchanged when both are mirrored at a plane through the normal
-    /// Of unit vectors above the horizon, angles in radians; azimuths of differences are from 0 to
-    /// 2 pi.
+    /// From unit vectors above the horizon, angles in radians; azimuths of differences are from 0
+    /// to 2 pi.
     void (*coordinates)(const Direction& wi, const Direction& wo, double* x);
 };
 

@@ -34,7 +34,7 @@ bool looksLikeNist(std::span<const unsigned char> head, std::uint64_t) {
     return asText(head).starts_with(beginning);
 }
 
-/// Of a row, whose matrix begins at its sixth number and has f_r11 in place of m_11.
+/// The element of a row, whose matrix begins at its sixth number and has f_r11 in place of m_11.
 double valueOf(const std::vector<double>& row, const MuellerElement& element) {
     if (element.isReflectance()) return row[5];
     std::vector<double> values;

@@ -15,7 +15,7 @@ double azimuthal(int k, double phi) {
     return k > 0 ? std::cos(k * phi) : -std::sin(k * phi);
 }
 
-/// Of the elements below the diagonal those that change their sign with the order of directions.
+/// The elements below the diagonal that change their sign with the order of directions.
 bool isOdd(std::size_t row, std::size_t column) {
     return (row == 2 && column < 2) || (row == 3 && column == 2);
 }

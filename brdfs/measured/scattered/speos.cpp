@@ -179,7 +179,8 @@ SpeosTable SpeosReader::takeTable() {
     return table;
 }
 
-/// Of the values, bilinear between the nodes, constant from the first polar angle to the normal.
+/// The integral of the values, bilinear between the nodes, constant from the first polar angle to
+/// the normal.
 double SpeosReader::integral(const SpeosTable& table) const {
     const std::size_t phis = table.phis.size(), thetas = table.thetas.size();
     std::vector<double> rings(thetas, 0.0);

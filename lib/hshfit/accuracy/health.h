@@ -57,7 +57,7 @@ struct Health {
 struct HealthOptions {
     std::size_t pairs = 16384;
     double albedoTolerance = 1e-3;
-    /// Of all albedos together, and of all reflectances together; they share them evenly. Where
+    /// For all albedos together, and for all reflectances together; they share them evenly. Where
     /// they do not do, the error that is left is stated. Two million take seconds where f is a
     /// search among samples.
     std::size_t albedoEvaluations = std::size_t{1} << 21;

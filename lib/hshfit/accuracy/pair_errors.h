@@ -51,7 +51,7 @@ public:
     };
     /// Errors of `g`, which has as many channels. On one thread.
     Result errorsOf(const Brdf& g) const;
-    /// Of values at the pairs, as from evaluateOn; albedo as far as the pairs determine it.
+    /// The errors of values at the pairs (evaluateOn); albedo as far as the pairs determine it.
     Result errorsOf(std::span<const double> g) const;
 
 private:

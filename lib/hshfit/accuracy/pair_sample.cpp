@@ -17,7 +17,7 @@ namespace hshfit::inline accuracy {
 namespace {
 
 constexpr double leastSlope = 1e-4, greatestSlope = 10, leastCosine = 1e-4;
-/// Of the pairs of one wo: evenly, towards lobes, towards the horizon.
+/// Shares of the pairs of one wo: evenly, towards lobes, towards the horizon.
 constexpr std::array<int, 3> eighths{3, 3, 2};
 /// Divisions of the lowest stratum of cos(theta_o).
 constexpr std::array<double, 4> lowest{0, 1.0 / 64, 1.0 / 8, 1};

@@ -20,8 +20,8 @@ std::unique_ptr<Basis> makeLsosh(int order, BasisOptions options);
 
 /// The condition of the systems of one order.
 struct LsoshGram {
-    /// Of G: the squared condition of R, the largest over m. Infinite beyond 1e30, where singular
-    /// values of R are rounding errors.
+    /// The condition of G: that of R squared, the largest over m. Infinite beyond 1e30, where
+    /// singular values of R are rounding errors.
     double condition = 1;
     int kept = 0;  ///< directions that the solve keeps, of order^2
 };

@@ -167,7 +167,7 @@ void FileSet::stateKeys() {
     }
 }
 
-/// Of the sets that members replace.
+/// Members of the sets that these files replace.
 std::vector<fs::path> FileSet::others() const {
     std::vector<fs::path> result;
     std::error_code error;

@@ -11,7 +11,7 @@ namespace hshfit::inline files {
 struct MadeFrom {
     std::string command = {};  ///< that wrote it
     std::string key = {};      ///< of inputs, options and version: OutputRule
-    /// Of the run, where that is not 0: what it found out lies in its files all the same.
+    /// The exit code of the run. Where it is not 0, its findings lie in its files all the same.
     int exitCode = 0;
     std::vector<std::string> files = {};  ///< written with it, by names in the same folder
     /// sumOfPart of each of them; empty for one that states its own content.

@@ -13,9 +13,9 @@ struct OutputRule {
     /// OutputError, and equal bytes are kept. The default is that of a library.
     bool replace = true;
     std::string command = {};  ///< that writes
-    /// Of the options and the version, without the inputs; empty: files say nothing.
+    /// Options and version, without the inputs; empty: files say nothing.
     std::string facts = {};
-    /// Of inputs, options and version: goes into files that have a place for it (made_from.h).
+    /// A checksum of inputs, options and version, for files that have a place for it (made_from.h).
     std::string key = {};
 };
 

@@ -20,7 +20,7 @@ struct ViewerLight {
     /// SH over the sphere, of the light itself and not of the picture.
     LightCoefficients coefficients;
     double captured = 0;  ///< share of the energy within the order; NaN for light from points
-    /// Of the picture's own coefficients: root mean square of their difference, relative.
+    /// Root mean square of the difference of the picture's own coefficients, relative.
     double pictureError = 0;
 };
 

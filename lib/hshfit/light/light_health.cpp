@@ -74,7 +74,7 @@ std::optional<Shape> shapeOf(const Light& light) {
     }
     const auto* panel = std::get_if<PanelLight>(&light);
     if (!panel) return {};
-    // Of a rectangle at distance 1, seen from above its middle.
+    // The solid angle of a rectangle at distance 1, seen from above its middle.
     const double a = std::tan(panel->width / 2), b = std::tan(panel->height / 2);
     return Shape{panel->towards, panel->radiance,
                  4 * std::atan(a * b / std::sqrt(1 + a * a + b * b)),

@@ -247,7 +247,7 @@ double cubeSolidAngle(const PictureGeometry& g, std::size_t column, std::size_t 
     };
     const double a0 = edge(column % n), a1 = edge(column % n + 1);
     const double b0 = edge(row % n), b1 = edge(row % n + 1);
-    // Of the rectangle from the middle of a face to (a, b).
+    // The solid angle of the rectangle from the middle of a face to (a, b).
     const auto corner = [](double a, double b) {
         return std::atan2(a * b, std::sqrt(a * a + b * b + 1));
     };

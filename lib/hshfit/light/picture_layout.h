@@ -47,8 +47,9 @@ struct PictureGeometry {
     /// edges of the picture and of the faces of a cube; none beside the used area of discs.
     std::optional<std::array<std::size_t, 2>> neighbour(std::size_t column, std::size_t row,
                                                         int right, int down) const;
-    /// Of a pixel; 0 outside of the used area. Exact for latlong, mirror balls inside the rim,
-    /// cubes and squares of equal area; from two Gauss nodes each way for angular maps and domes.
+    /// Solid angle of a pixel; 0 outside of the used area. Exact for latlong, mirror balls inside
+    /// the rim, cubes and squares of equal area; from two Gauss nodes each way for angular maps and
+    /// domes.
     double solidAngle(std::size_t column, std::size_t row) const;
     /// Solid angle per pixel at a position in pixels; 0 outside of the used area.
     double density(double column, double row) const;

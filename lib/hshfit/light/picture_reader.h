@@ -29,7 +29,7 @@ double decoded(TransferCurve curve, double value);
 struct PictureOptions {
     std::optional<PictureLayout> layout = {};  ///< none: by the size
     std::optional<TransferCurve> curve = {};   ///< none: linear, for floating-point files only
-    /// Of an OpenEXR file: the name or the number, from 1, of a part, and the words before ".R" of
+    /// For an OpenEXR file: the name or the number, from 1, of a part, and the words before ".R" of
     /// its channels. Empty: the only one with R, G and B; of several, the one without such words.
     std::string part = {}, layer = {};
 };
@@ -49,7 +49,7 @@ struct PictureFacts {
     PictureGeometry geometry;
     PictureLayout layout = PictureLayout::latlong;  ///< of the file
     std::size_t fileHeight = 0;                     ///< rows of the file
-    /// Of the file, or of the first of six.
+    /// Parts of the file, or of the first of six.
     std::vector<PicturePart> parts = {};
     std::size_t part = 0;  ///< the one that is read
     std::string layer = {};

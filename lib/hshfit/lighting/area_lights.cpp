@@ -41,7 +41,7 @@ public:
     const Rgb& sum(std::size_t face, std::size_t row, std::size_t column) const {
         return sums_[place(face, row, column)];
     }
-    /// Of the faces, by R, G, B.
+    /// The largest of the faces, by R, G, B.
     double largest() const {
         double most = 0;
         for (std::size_t face = 0; face < 6; ++face)

@@ -178,7 +178,7 @@ private:
         const Cell& cell = own.cells[place];
         if (!cell.any) return;
         const double size = 2 / static_cast<double>(own.width);
-        // Of the chord, squared.
+        // The square of the chord.
         const double squared =
             2 - 2 * (axis.x * cell.sum.x + axis.y * cell.sum.y + axis.z * cell.sum.z);
         if (size * size <= slender * slender * squared * kernel.growth(squared))

@@ -44,8 +44,8 @@ struct LobeSummary {
     /// hemisphere (a quantile by projected solid angle), at most the albedo.
     Rgb even{};
     Rgb rest{};  ///< albedo - even
-    /// Of the rest, the mean over channels: unit vector of its mean direction, and that vector's
-    /// length, the mean cosine about it. The mirror direction and 1 where there is no rest.
+    /// Mean direction of the rest, over the channels, as a unit vector, and the mean cosine about
+    /// it. The mirror direction and 1 where there is no rest.
     Direction axis;
     double meanCosine = 1;
 };

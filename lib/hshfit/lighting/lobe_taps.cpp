@@ -66,8 +66,8 @@ double SpreadSolver::scaleFor(double cosine) const {
     return std::exp(lookUp(cosine, logarithms_));
 }
 
-// Of a kernel about a tap at the angle a, with mean square cosine q, the mean squares along and
-// across the taps are q sin^2 a + (1 - q) / 2 cos^2 a and (1 - q) / 2.
+// A kernel about a tap at the angle a, with mean square cosine q, has mean squares along and
+// across the taps of q sin^2 a + (1 - q) / 2 cos^2 a and (1 - q) / 2.
 SpreadLobe SpreadSolver::solve(double meanCosine, const LobeSpread& spread) const {
     SpreadLobe lobe{.meanCosine = meanCosine, .angle = spread.angle()};
     const double wanted = std::hypot(spread.difference, spread.product);

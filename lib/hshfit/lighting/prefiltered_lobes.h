@@ -30,7 +30,7 @@ struct PrefilteredTable {
     std::size_t lobes = 0;
     bool inPlane = true;
     ElevationTable table = {};
-    /// Of each row what is left of the weighted squares, the root of its share; rows as in `table`.
+    /// The rest of the weighted squares in each row, as the root of its share.
     std::vector<double> residuals = {};
     /// Squares of f cos(theta_i) and of what the lobes leave, for turnedError: [row][channel][l].
     std::vector<double> squares = {}, left = {};

@@ -112,7 +112,7 @@ Posterior::Posterior(const Library& library) : state_(new State{.basis = library
             fmt::format("the library has {} materials in its basis; a prior needs {} "
                         "or more",
                         s.materials.size(), fewestMaterials));
-    // Of a normal distribution the mean magnitude is 0.8 of the standard deviation.
+    // The mean magnitude of a normal distribution is 0.8 of the standard deviation.
     s.beyond = library.unseen > 0 ? library.unseen * library.unseen
                                   : square / static_cast<double>(s.materials.size());
     s.top = top;

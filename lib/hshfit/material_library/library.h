@@ -32,7 +32,7 @@ struct Material {
     std::string halfway = {};              ///< halfway: the JSON of a coefficient file
     std::size_t bytes = 0;                 ///< of its numbers
     std::string fallback = {};             ///< why it is not coded; empty: it is
-    /// Of a material that was learned: the sum of the errors of the projection onto logTerms() and
+    /// A material that was learned has the sum of the errors of the projection onto logTerms() and
     /// of the rounding to the basis, which is at least the distance from the source.
     FormError error = {};
 };

@@ -24,7 +24,7 @@ Vector cross(const Vector& a, const Vector& b) {
 double dot(const Vector& a, const Vector& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
-/// Of length 1; 0 for a vector that is 0.
+/// The vector at length 1; 0 for a vector that is 0.
 Vector unit(const Vector& a) {
     const double length = std::hypot(a[0], a[1], a[2]);
     if (!(length > 0)) return {};

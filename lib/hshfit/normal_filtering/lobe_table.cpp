@@ -53,7 +53,7 @@ double valueAt(const NormalDistribution& d, const Direction& h, std::size_t row,
 void ringMoments(const NormalDistribution& d, double sine, double mu, int order, bool isotropic,
                  std::size_t row, std::size_t column, std::vector<double>& out) {
     std::fill(out.begin(), out.end(), 0.0);
-    // Of an anisotropic D, azimuths cluster where it is long; 1/ratio as many are needed.
+    // Azimuths of an anisotropic D cluster where it is long; 1/ratio as many are needed.
     const double ratio = std::max(d.widthX, d.widthY) / std::min(d.widthX, d.widthY);
     const int azimuths = isotropic ? 1 : 4 * static_cast<int>(order + 8 * std::ceil(ratio));
     std::vector<double> parts(static_cast<std::size_t>(2 * order - 1));

@@ -60,7 +60,7 @@ public:
     /// Coefficients in slots l(l+1) + m, order^2 of them, 0 for odd l.
     void coefficients(const LobePlace& place, std::span<double> out) const;
     std::array<double, 2> widths(const LobePlace& place) const;
-    /// Of the nearest entry; the widths scale it to others.
+    /// The sum of the nearest entry; the widths scale it to others.
     const GaussianSum& gaussians(const LobePlace& place) const;
 
     /// L2 over the sphere of bands `order` and up to order() - 1 of an entry, relative to the norm

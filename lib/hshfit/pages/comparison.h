@@ -13,8 +13,8 @@
 namespace hshfit::inline pages {
 
 struct ComparisonOptions {
-    /// Of the metrics. None: 16 elevations, or a 16x16 map if one of the two is anisotropic. For a
-    /// single direction, the plane of incidence is drawn at it alone.
+    /// Directions of the metrics. None: 16 elevations, or a 16x16 map if one of the two is
+    /// anisotropic. For a single direction, the plane of incidence is drawn at it alone.
     std::optional<OutgoingSet> outgoing = {};
     /// Metrics that were computed before, over `outgoing`; empty: all of the catalog are computed.
     std::vector<MetricValue> metrics = {};

@@ -13,7 +13,7 @@ namespace {
 
 using Curve = ComparisonCurve;
 
-/// Of both sides, at angles up to `steepest`.
+/// Values of both sides, at angles up to `steepest`.
 std::vector<double> valuesOf(const std::vector<const Curve*>& curves, double steepest) {
     std::vector<double> values;
     for (const Curve* curve : curves)
@@ -42,8 +42,8 @@ public:
     }
 
 private:
-    /// Of both sides. Those of the approximation are dashed; where both have one channel, its
-    /// colour is another.
+    /// Series of both sides. The approximation is dashed; where both have one channel, it has
+    /// another colour.
     std::vector<PrintSeries> seriesOf(const Curve& curve) const {
         const auto names = comparison_.channels.names();
         const std::size_t count = comparison_.drawn.size();

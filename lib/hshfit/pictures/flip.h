@@ -7,7 +7,7 @@
 namespace hshfit::inline pictures {
 
 struct FlipOptions {
-    /// Of the observer: 0.7 m from a screen 0.7 m wide with 3840 pixels across.
+    /// The observer is 0.7 m from a screen 0.7 m wide with 3840 pixels across.
     double pixelsPerDegree = 67.0206;
 };
 

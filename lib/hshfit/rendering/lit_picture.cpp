@@ -80,7 +80,7 @@ struct LitPoint {
     Direction wo;
 };
 
-/// Of a reflection, the side that is seen. A transmission is a thin pane: light comes from behind
+/// The side that is seen, for a reflection. A transmission is a thin pane: light comes from behind
 /// it, and the viewer's direction, below the lit side, is mirrored at the surface.
 LitPoint litPoint(const Direction& normal, const Direction& viewer, bool through) {
     if (!through) {

@@ -114,7 +114,7 @@ struct Extent {
     double half = 0, depth = 0;
 };
 
-/// Of the side that is seen, and at least a little towards the viewer.
+/// The normal of the side that is seen, at least a little towards the viewer.
 Direction seenNormal(const Mesh& mesh, const RayHit& hit, const Direction& towards) {
     const auto& t = mesh.triangles[hit.triangle];
     const Direction a = directionOf(mesh.positions[t[0]]), b = directionOf(mesh.positions[t[1]]),

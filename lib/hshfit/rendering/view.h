@@ -11,7 +11,7 @@ namespace hshfit::inline rendering {
 
 /// A picture's axes in the world: to the right, up, and to the viewer.
 struct View {
-    /// Of the direction (theta, phi) to the viewer, radians; the world's +z is up in the picture.
+    /// From the direction (theta, phi) to the viewer, radians; the world's +z is up in the picture.
     /// `fieldOfView` is the angle of a perspective picture from edge to edge, below pi; 0: lines
     /// of sight are parallel.
     View(double theta, double phi, double fieldOfView = 0);

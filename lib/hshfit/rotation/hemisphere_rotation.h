@@ -27,10 +27,10 @@ std::string methodName(HemisphereMethod method);
 
 struct HemisphereRotationOptions {
     HemisphereMethod method = HemisphereMethod::exact;
-    /// Of `throughSh`: bands are doubled until the result changes by less than this, relative to
+    /// For `throughSh`: bands are doubled until the result changes by less than this, relative to
     /// the coefficients, or there are 1000.
     double tolerance = 1e-3;
-    /// Of `table`: beta = 0 .. 180 degrees in tables - 1 steps.
+    /// For `table`: beta = 0 .. 180 degrees in tables - 1 steps.
     int tables = 91;
 };
 
@@ -66,7 +66,7 @@ public:
     /// All order^2 x order^2 entries, row by row. Throws UsageError for an order above 32.
     std::vector<double> matrix(const Rotation& rotation) const;
 
-    /// Of the tables of `table`, in double precision without entries that are always 0.
+    /// Bytes of the tables of `table`, in double precision without entries that are always 0.
     std::size_t tableBytes() const;
 
 private:

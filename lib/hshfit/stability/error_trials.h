@@ -20,7 +20,7 @@ struct ErrorTrial {
     std::string basis = "hsh";
     int order = 7;
     Quantity quantity = Quantity::brdf;
-    /// Of a table, whose file need not exist any more: the name of a file, and the command that
+    /// For a table, whose file need not exist any more: the name of a file, and the command that
     /// writes it. Empty: the name of `brdf` is its specification.
     std::string file = {}, writtenBy = {};
 
@@ -55,7 +55,7 @@ struct ErrorTrialResult {
 };
 
 struct ErrorTrialOptions {
-    /// Of a reference; beyond, one at a tenth of the tolerance is tried.
+    /// For a reference; beyond, one at a tenth of the tolerance is tried.
     std::size_t referenceEvaluations = std::size_t{1} << 20;
     std::function<void(std::size_t, std::size_t)> progress = {};
 };

@@ -43,7 +43,7 @@ std::vector<int> gramOrders(int largest) {
     return orders;
 }
 
-/// Of matrices that rotate hemispherical bases, whose cost grows with the sixth power of the order.
+/// For rotations of hemispherical bases, whose cost grows with the sixth power of the order.
 constexpr int mostMatrixOrder = 16;
 
 /// Rotation, and change of basis with the spherical harmonics as the other one.

@@ -28,7 +28,7 @@ public:
     /// Wall-clock seconds, on all threads, of the projection that the form derives from.
     double seconds(const Form& form) const;
 
-    /// Of a form that was prepared for. These throw NumericError or UsageError with the reason.
+    /// For a form that was prepared. These throw NumericError or UsageError with the reason.
     Coefficients outgoing(const Form& form) override;
     Representation both(const Form& form) override;
     Representation halfway(const Form& form) override;

@@ -19,9 +19,10 @@ struct Sweep {
         Representation::Kind::outgoing, Representation::Kind::basis, Representation::Kind::halfway};
     std::vector<std::string> bases = {"hsh", "zernike", "makhotkin"};
     std::vector<int> orders = {3, 5, 7, 10};
-    /// Of kind outgoing. Empty: 8, 16 and 32 elevations if isotropic, else 8x8 and 16x16.
+    /// For the kind outgoing. Empty: 8, 16 and 32 elevations if isotropic, else 8x8 and 16x16.
     std::vector<std::string> outgoing = {};
-    /// Of kind halfway; the numbers of functions that `project --halfway` takes, 0 for its default.
+    /// For the kind halfway, numbers of functions as `project --halfway` takes them; 0: its
+    /// default.
     std::vector<HalfwayOrders> halfway = {{5, 4, 3}, {7, 6, 5}, {}, {13, 12, 8}};
     std::vector<int> ranks = {0, 2, 4};  ///< 0: not factored
     std::vector<Precision> precisions = {Precision::float32, Precision::half, Precision::unorm16,

@@ -110,10 +110,10 @@ struct Tradeoff {
     double errorOf(std::size_t form) const;
     /// Why a form is poor (pictures/poor.h), by its picture error and the energy that is left.
     std::optional<std::string> poorReasonOf(std::size_t form) const;
-    /// Of one band; NaN likewise, and of picture.
+    /// The error in one band; NaN likewise, and by the metric picture.
     double bandErrorOf(std::size_t form, std::size_t band) const;
     std::optional<double> uncertaintyOf(std::size_t form) const;
-    /// Of `wavelets`.
+    /// The error of a form of `wavelets`.
     double waveletErrorOf(std::size_t form) const;
     /// Those that no other wavelet form beats, by rising bytes.
     std::vector<std::size_t> waveletFront() const;

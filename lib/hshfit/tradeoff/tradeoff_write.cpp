@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using kainjow::mustache::data;
 
-/// Of one channel of an RGL material, which figures mark.
+/// Bytes of one channel of an RGL material, which figures mark.
 constexpr double tableBytes = 16384;
 
 bool isTimed(std::span<const Tradeoff> trades) {

@@ -14,7 +14,7 @@ namespace hshfit::tradeoff {
 struct MeasuredWavelets {
     std::string outgoing;
     std::size_t terms = 0;  ///< of each outgoing direction and channel
-    /// Of a value, 4 or 2; an index of 2 comes on top.
+    /// Bytes of a value, 4 or 2; an index of 2 comes on top.
     std::size_t valueBytes = 0;
     std::size_t bytes = 0;  ///< values and indices
     PairErrors errors;

@@ -54,7 +54,7 @@ struct AngleOptions {
     /// Angles at which h or a derivative jumps; panels of the quadrature end there.
     std::vector<double> breaks = {};
     double last = 3.14159265358979323846;  ///< h is 0 beyond this angle
-    /// Of the integral of |h|: panels are halved until h is resolved to this.
+    /// Share of the integral of |h|: panels are halved until h is resolved to it.
     double tolerance = 1e-13;
 };
 /// The multipliers of any kernel, by Gauss-Legendre panels in the angle that are halved until h

@@ -24,7 +24,7 @@ double largestOf(const Rgb& rgb) {
     return *std::ranges::max_element(rgb);
 }
 
-/// Of a light without sharp features but at `sun`.
+/// The greatest radiance of a light without sharp features but at `sun`.
 double brightestOnGrid(const Light& light, const Direction& sun) {
     double brightest = largestOf(radianceFrom({&light, 1}, sun));
     for (int theta = 0; theta <= 180; ++theta) {

@@ -94,7 +94,7 @@ SurfaceHit SurfaceScene::hitOf(const RayHit& hit, const Direction& direction) co
         {directionOf(normals[0]), directionOf(normals[1]), directionOf(normals[2])}, hit.u, hit.v);
     Direction smooth = normalised({n[0], n[1], n[2]});
     if (!(dot(smooth, smooth) > 0.5)) smooth = flat;
-    // Of the ray's side, and with the ray above its horizon.
+    // On the ray's side, and with the ray above its horizon.
     if (dot(smooth, flat) < 0) smooth = -smooth;
     if (!(dot(smooth, towards) > 1e-4)) smooth = flat;
     SurfaceHit result{.position = weighted(corners, hit.u, hit.v),

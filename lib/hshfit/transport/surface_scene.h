@@ -66,7 +66,7 @@ public:
     SurfaceScene& operator=(const SurfaceScene&) = delete;
 
     std::optional<SurfaceHit> firstHit(const Point& origin, const Direction& direction) const;
-    /// Of a ray that leaves a surface; `direction` on the side of its `flat`.
+    /// The first hit of a ray that leaves a surface; `direction` on the side of its `flat`.
     std::optional<SurfaceHit> firstHit(const SurfaceHit& from, const Direction& direction) const;
     /// Whether nothing lies between a surface and a point, or, without one, infinity.
     bool visible(const SurfaceHit& from, const Direction& direction,

@@ -63,7 +63,7 @@ public:
     const Laws& laws() const override { return laws_; }
     void eval(const Direction& wo, DirectionBatch wi, double* out) const override;
 
-    /// Of values and indices; terms that are 0 are stored all the same.
+    /// Bytes of values and indices; terms that are 0 are stored all the same.
     std::size_t bytes() const;
 
 private:

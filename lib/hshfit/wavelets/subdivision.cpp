@@ -30,7 +30,7 @@ struct Mobius {
         return {a * first.a + b * first.c, a * first.b + b * first.d, c * first.a + d * first.c,
                 c * first.b + d * first.d};
     }
-    /// Of the quadratic equation of fixed points.
+    /// The discriminant of the quadratic equation of fixed points.
     double discriminant() const { return (d - a) * (d - a) + 4 * b * c; }
     double fixedPoint() const { return (a - d) / (2 * c); }
 };

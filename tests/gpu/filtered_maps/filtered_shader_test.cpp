@@ -186,7 +186,7 @@ std::string shaderOf(const Proof& proof, Language language) {
                           {.wrap = proof.sample.wrap});
 }
 
-/// Of places in single precision, of a surface whose neighbouring texels have nothing in common; a
+/// For places in single precision, on a surface whose neighbouring texels have nothing in common; a
 /// GPU may blend with weights of 8 bits.
 double tolerance() {
     return std::getenv("HSHFIT_TEST_GPU") != nullptr ? 2e-2 : 1e-3;

@@ -141,8 +141,8 @@ const std::vector<Proof>& proofs(bool world) {
     return all;
 }
 
-/// Of the largest value. A lookup is placed to W 2^-25 per axis and a few 2^-24 between levels,
-/// and neighbouring texels of noise differ by twice the largest value.
+/// Relative to the largest value. A lookup is placed to W 2^-25 per axis and a few 2^-24 between
+/// levels, and neighbouring texels of noise differ by twice the largest value.
 double toleranceOf(const SampleMap& sample) {
     if (std::getenv("HSHFIT_TEST_GPU") != nullptr) return 1e-2;
     return 2 * 3 * std::ldexp(static_cast<double>(sample.width + sample.height) + 8, -24);

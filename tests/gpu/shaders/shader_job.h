@@ -42,17 +42,17 @@ struct ShaderJob {
     /// `shadeWorld` instead of `shade`: the surface of a pair has the normal wi and the tangent of
     /// `frameOf`, wo is in that frame, and the environment in the world.
     bool world = false;
-    /// Of a form (gpu/forms): where its numbers are, "constants", "block" or "texture"; it
+    /// For a form (gpu/forms): where its numbers are, "constants", "block" or "texture"; it
     /// has no light, and evalRaw is eval. `payload` has the head and the texels.
     std::string form = {};
     /// Three uniform numbers in place of wi; outputs are those of tests/gpu/proposals.
     bool sampling = false;
-    /// Of a map of materials: its levels after the first, which is in `payload` with what the
+    /// For a map of materials: its levels after the first, which is in `payload` with what the
     /// texels share as its basis texels, and u, v and level of each pair, which snippets take
     /// before wo.
     std::vector<gpu::Texels> levels = {};
     std::vector<double> places = {};
-    /// Of a map of filtered lobes with harmonics: all levels of these, from the map's level 1 on.
+    /// For a map of filtered lobes with harmonics: all levels of these, from the map's level 1 on.
     std::vector<gpu::Texels> harmonics = {};
 
     std::size_t channels() const { return payload.head.channels.count(); }

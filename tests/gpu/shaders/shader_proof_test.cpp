@@ -13,10 +13,10 @@ namespace {
 
 using gpu::Language;
 
-/// Of the largest value. On a GPU texels are blended with weights of 8 bits, and llvmpipe blends
-/// bytes into bytes: a step of 1/255 in each of 49 lanes, which add up at random.
-/// A lookup in W texels is placed to W 2^-25 for u in [1/2, 1), W 2^-25 for u W and as much for
-/// u W - 1/2, per axis; neighbouring texels of noise differ by twice the largest value.
+/// Relative to the largest value. On a GPU texels are blended with weights of 8 bits, and llvmpipe
+/// blends bytes into bytes: a step of 1/255 in each of 49 lanes, which add up at random. A lookup
+/// in W texels is placed to W 2^-25 for u in [1/2, 1), W 2^-25 for u W and as much for u W - 1/2,
+/// per axis; neighbouring texels of noise differ by twice the largest value.
 double toleranceOf(Language language, const Variant& variant) {
     if (std::getenv("HSHFIT_TEST_GPU") != nullptr) return 1e-3;
     const gpu::Texels& texels = variant.payload.coefficients;

@@ -198,7 +198,7 @@ std::string wrapped(gpu::Language language, const ShaderJob& job, const std::str
     const bool map = !job.places.empty();
     number("firstPlace", 6 * job.pairs.wo.size() + job.environment.values.size());
     page.set("map", map);
-    // Of a map without a sampler, texels are indices.
+    // Texels of a map without a sampler are indices.
     const bool sharing = map && job.payload.basisTexels;
     const bool indices = map && isNormalised(job.payload.coefficients.number);
     page.set("sharing", sharing);

@@ -70,7 +70,7 @@ inline std::vector<Real> values(std::string_view name, int degree, int m, const 
         if (n > 0)
             h *= Real(n + a) * (n + b) / (Real(n) * (n + a + b)) * (2 * n + a + b - 1) /
                  (2 * n + a + b + 1);
-        // Of the weight (1-t)^a (1+t)^b: hsh, F^{2m} = ((1-t)(1+t))^m, dmu = dt/2; flux, mu^{m+1};
+        // The weight (1-t)^a (1+t)^b: hsh, F^{2m} = ((1-t)(1+t))^m, dmu = dt/2; flux, mu^{m+1};
         // zernike, rest^m = ((1+t)/2)^m; in every case T = c F P_n with c^2 h = the factor below.
         const Real weight = sphere  ? Real(1)
                             : flux  ? Real(4)

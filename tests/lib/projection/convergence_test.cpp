@@ -46,7 +46,7 @@ TEST(Convergence, ExponentialErrorsAreCovered) {
 TEST(Convergence, ExponentialErrorsAreNotTakenForChanges) {
     const auto error = [](int k) { return std::exp(-4 * std::pow(1.4, k)); };
     EXPECT_LE(estimate(error, 5).stated, 0.4 * error(3));
-    // Of an interpolated table it is not believed.
+    // It is not believed for an interpolated table.
     EXPECT_GE(estimate(error, 5, false).stated, error(3) - error(4));
 }
 
@@ -66,7 +66,7 @@ TEST(Convergence, AnAccidentOfTheLastChangeIsSeen) {
     }
 }
 
-/// Of one sign, as at a singularity that rules come nearer to: N^-1 is 1.4^-1 a level.
+/// Errors of one sign, as at a singularity that rules come nearer to: N^-1 is 1.4^-1 a level.
 TEST(Convergence, SlowErrorsOfOneSignAreCovered) {
     for (const double ratio : {0.3, 0.5, 0.6, 0.7, 0.75}) {
         const auto error = [&](int k) { return std::pow(ratio, k); };
@@ -77,8 +77,8 @@ TEST(Convergence, SlowErrorsOfOneSignAreCovered) {
     }
 }
 
-/// Of both signs: every phase of a kink between nodes, over all of which few are not covered. The
-/// last change alone misses a third of them.
+/// Errors of both signs: every phase of a kink between nodes, over all of which few are not
+/// covered. The last change alone misses a third of them.
 TEST(Convergence, AccidentsOfKinksAreCovered) {
     constexpr double ratio = 0.43;
     int trials = 0, missed = 0, missedByLast = 0;

@@ -22,7 +22,7 @@ StepRows<Real>::StepRows(const Recurrences<double>& steps, std::size_t side) {
         Real* row = lines_[offsets_[b]].value.data();
         for (std::size_t l = m0; l < order; l += apart, row += 3 * wide)
             for (std::size_t m = m0; m < m0 + wide; ++m) {
-                // Of rows l and l + 1 the one in which column m has a function.
+                // The one of rows l and l + 1 in which column m has a function.
                 const std::size_t target = l + (l + m) % apart;
                 const bool moves = m < target && target < order;
                 Step<double> step{0, 1, 0};

@@ -32,7 +32,7 @@ void ErrorSum::add(const ErrorSum& more) {
     const auto before = [](const LevelErrors& a, const LevelErrors& b) {
         return a.row != b.row ? a.row < b.row : a.column < b.column;
     };
-    // Of equal ones the first in the map, whatever the order of tiles.
+    // The first in the map of equal ones, in any order of tiles.
     if (more.errors.maximum > errors.maximum ||
         (more.errors.maximum == errors.maximum && errors.maximum > 0 &&
          before(more.errors, errors))) {

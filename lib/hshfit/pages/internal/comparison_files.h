@@ -41,7 +41,7 @@ std::string comparisonJson(const Comparison& comparison);
 std::string comparisonPage(const Comparison& comparison, const std::vector<std::string>& figures,
                            const std::string& spheres, const std::string& opening = {});
 
-/// Of the cells of all maps where the reference was measured.
+/// Shares of the cells of all maps where the reference was measured.
 struct ResidualShares {
     std::size_t cells = 0;  ///< measured ones
     std::size_t unmeasured = 0;

@@ -20,8 +20,8 @@ namespace {
 using Inner = Basis::Inner;
 
 constexpr int maxLevel = 20;
-/// Of sums over all nodes, relative; and the accuracy of basis functions and of models' formulas,
-/// below which no error is stated.
+/// Rounding of sums over all nodes, relative; and the accuracy of basis functions and of models'
+/// formulas, below which no error is stated.
 constexpr double rounding = 1e-14, accuracyOfValues = 1e-12;
 /// Tolerances from here on are those of interpolated tables (Brdf::defaultTolerance).
 constexpr double interpolated = 1e-4;

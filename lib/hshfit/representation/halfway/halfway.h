@@ -61,9 +61,9 @@ std::unique_ptr<PairEvaluator> halfwayPairEvaluator(const Representation& repres
 /// `head.error` and the last step are the error over pairs that took no part, as halfwayError has
 /// it. Results do not depend on threads. Terms keep the symmetries of `brdf.laws()`; `reciprocal`
 /// asks for those only that are symmetric in wi and wo, and for an isotropic BRDF mirror symmetric.
-/// Of `options` only `progress` (steps done and in all) and `maxEvaluations` (of f by pairs) are
-/// used. Throws NumericError where f is not finite, UsageError for more than mostHalfwayTerms a
-/// channel.
+/// `options` are `progress` (steps done and in all) and `maxEvaluations` (of f by pairs); the
+/// others are not used. Throws NumericError where f is not finite, UsageError for more than
+/// mostHalfwayTerms a channel.
 Representation projectHalfway(const Brdf& brdf, const HalfwayOrders& orders,
                               const ProjectionOptions& options = {}, bool reciprocal = false);
 

@@ -67,7 +67,7 @@ public:
         smooth_.noalias() = values_.topRows(smooth).transpose() * products_.topRows(smooth);
         lobe_.noalias() = values_.bottomRows(rest).transpose() * products_.middleRows(smooth, rest);
     }
-    /// Of the k-th pair.
+    /// The two parts at the k-th pair.
     TwoParts parts(std::size_t k, Index channel) const {
         const auto at = static_cast<Index>(k);
         return {std::exp(std::min(smooth_(channel, at), greatestExponent)),

@@ -26,7 +26,7 @@ struct HalfwayModel {
     double floor;  ///< e of ln(f + e)
 };
 
-/// Of one channel at given coefficients: the loss, its gradient and Gauss and Newton's matrix.
+/// One channel at given coefficients: the loss, its gradient and Gauss and Newton's matrix.
 struct HalfwaySystem {
     Eigen::MatrixXd gram;
     Eigen::VectorXd slope;
