@@ -715,7 +715,7 @@ def choose(
 ) -> Row: ...
 def ltc(
     model: str,
-    files: Names,
+    files: Union[Path, Sequence[Path]],
     *,
     size: int = ...,
     parameter: str = ...,
@@ -747,7 +747,7 @@ def stress(
     progress: Progress = ...,
 ) -> Row: ...
 def tradeoff(
-    specs: Names,
+    specs: Union[Path, Sequence[Path]],
     folder: Optional[Path] = ...,
     *,
     forms: Names = ...,
