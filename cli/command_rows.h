@@ -23,5 +23,6 @@ OptionTables projectRows();
 OptionTables reportRows();
 OptionTables stressRows();
 OptionTables tradeoffRows();
+OptionTables transferRows();
 
 }  // namespace hshfit::cli

@@ -105,7 +105,6 @@ constexpr ValueRow valueRows[] = {
     {"svbrdf", "--output", {nullptr, Syntax::word, Files::folder}},
     {"svbrdf", "--precision", {mapPrecisionWords}},
     {"tradeoff", "--output", {nullptr, Syntax::word, Files::folder}},
-    {"transfer", "--material", {nullptr, Syntax::brdf, Files::read}},
     {"transfer", "--output", {nullptr, Syntax::word, Files::folder}},
     {"", "--basis", {basisWords}},
     {"", "--compare-models", {modelWords, Syntax::sum}},

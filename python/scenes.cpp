@@ -25,17 +25,6 @@ namespace {
 
 namespace bounds = jobs::bounds;
 
-/// The place of a name among those of an enumeration.
-template <class Enumeration>
-Enumeration numbered(const char* argument, std::span<const std::string_view> names,
-                     const std::string& name) {
-    const auto found = std::ranges::find(names, name);
-    if (found == names.end())
-        throw UsageError(
-            fmt::format("{}: '{}' is none of {}", argument, name, fmt::join(names, ", ")));
-    return static_cast<Enumeration>(found - names.begin());
-}
-
 std::string pathOrNone(const py::object& path, const char* name) {
     return path.is_none() ? std::string() : pathOf(path, name);
 }
@@ -94,44 +83,11 @@ py::object illuminated(const py::object& scene, const py::object& folder, const 
     return fromJson(answer);
 }
 
-py::object transferred(const py::object& scene, const py::object& folder, const std::string& kind,
-                       int passes, std::size_t rays, int order, int localOrder,
-                       const std::vector<std::size_t>& clusters, std::size_t components,
-                       double error, const py::object& bytes, const py::object& edge,
-                       const std::string& sides, std::uint64_t seed, double memory,
-                       const std::vector<std::string>& lights,
-                       const std::vector<std::string>& materials, int referenceSamples,
-                       const std::string& camera, bool resume, bool force,
-                       const py::object& progress) {
+py::object transferred(const py::object& scene, const py::object& folder,
+                       const py::kwargs& keywords) {
     jobs::TransferOptions options;
-    options.kind = numbered<jobs::TransferKind>("kind", jobs::transferKinds, kind);
-    options.mesh.sides = numbered<Sides>("sides", jobs::transferSides, sides);
-    if (!edge.is_none()) options.mesh.edge = edge.cast<double>();
-    requireWithin("passes", passes, bounds::passes);
-    requireWithin("rays", rays, bounds::transferRays);
-    requireWithin("order", order, bounds::transferOrder);
-    requireWithin("local_order", localOrder, bounds::localOrder);
-    requireWithin("components", components, bounds::components);
-    requireWithin("reference_samples", referenceSamples, bounds::referenceSamples);
-    for (const std::size_t count : clusters) requireWithin("clusters", count, bounds::clusters);
-    if (!(error > 0) || !(memory > 0)) throw UsageError("error and memory: give numbers above 0");
-    options.passes = passes;
-    options.rays = rays;
-    options.order = order;
-    options.localOrder = localOrder;
-    options.clusters = clusters;
-    std::erase(options.clusters, 0U);
-    options.components = components;
-    options.error = error;
-    if (!bytes.is_none()) options.bytes = bytes.cast<std::size_t>();
-    options.seed = seed;
-    options.memory = static_cast<std::size_t>(memory * 1e6);
-    options.lights = lights;
-    options.swaps = materials;
-    options.referenceSamples = referenceSamples;
-    options.camera = camera;
-    options.resume = resume;
-    options.force = force;
+    const py::object progress =
+        optionsFrom(keywords, boundOptions(jobs::transferOptions(), options));
     const std::string path = pathOf(scene, "scene"), output = pathOf(folder, "folder");
     nlohmann::ordered_json answer;
     watched(progress, {}, [&](const jobs::Listener& listener) {
@@ -184,31 +140,17 @@ seconds, rays, records, mean and its standard errors; relative_mse against `refe
 }
 
 void bindTransfer(py::module_& module) {
-    const jobs::TransferOptions options;
-    module.def(
-        "transfer", transferred, py::arg("scene"), py::arg("folder"), py::kw_only(),
-        py::arg("kind") = "interreflected", py::arg("passes") = options.passes,
-        py::arg("rays") = options.rays, py::arg("order") = options.order,
-        py::arg("local_order") = options.localOrder, py::arg("clusters") = options.clusters,
-        py::arg("components") = options.components, py::arg("error") = options.error,
-        py::arg("bytes") = py::none(), py::arg("edge") = py::none(), py::arg("sides") = "automatic",
-        py::arg("seed") = options.seed,
-        py::arg("memory") = 1e-6 * static_cast<double>(jobs::defaultTransferMemory),
-        py::arg("lights") = options.lights, py::arg("materials") = options.swaps,
-        py::arg("reference_samples") = options.referenceSamples, py::arg("camera") = options.camera,
-        py::arg("resume") = options.resume, py::arg("force") = options.force,
-        py::arg("progress") = py::none(),
-        R"(Precomputed transfer of a scene (Sloan et al. 2002): how light from all around reaches
+    jobs::TransferOptions options;
+    define(
+        module,
+        {"transfer", "scene: Path, folder: Path", boundOptions(jobs::transferOptions(), options),
+         "Row",
+         R"(Precomputed transfer of a scene (Sloan et al. 2002): how light from all around reaches
 each vertex.
 
-kind         "unshadowed", "shadowed" or "interreflected", with `passes` of reflection
-order        bands of light; local_order: bands of HSH above each vertex, 0 for vectors alone
-rays         of each vertex; memory: the most that may be needed, MB
-clusters     numbers to try for compressed matrices, of at most `components`; written is the
-             smallest within the relative L2 `error`, or the best within `bytes`
-
 Writes transfer.tensor, transfer.json and a page. Returns the answer of the command: vertices, rays,
-energy by pass, bytes, errors.)");
+energy by pass, bytes, errors.)"},
+        transferred, py::arg("scene"), py::arg("folder"));
 }
 
 }  // namespace

@@ -44,6 +44,7 @@ inline constexpr Bounds<int> cacheRays{4, 1 << 24};
 inline constexpr Bounds<double> cacheLoss{0, 1};
 inline constexpr Bounds<int> passes{0, 100000}, transferRays{1, 1 << 24}, transferOrder{1, 16},
     localOrder{0, 16}, clusters{0, 4096}, components{0, 64}, referenceSamples{0, 1 << 20};
+inline constexpr Bounds<double> clusterError{1e-9, 10}, transferMemory{1e-3, 1e9};
 inline constexpr Bounds<int> planOrder{1, 32};
 
 // Forms and their trade.

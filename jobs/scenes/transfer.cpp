@@ -32,13 +32,13 @@ std::string inUnits(std::size_t bytes) {
 }
 
 void requireMemory(std::size_t needed, const TransferOptions& options, std::size_t vertices) {
-    if (needed <= options.memory) return;
+    if (static_cast<double>(needed) <= 1e6 * options.memory) return;
     throw UsageError(fmt::format(
         "{} vertices need up to {} of memory, and {} allows {}; take longer edges ({}), fewer rays "
         "({}) or bands ({})",
-        vertices, inUnits(needed), Setting{"TransferOptions::memory"}, inUnits(options.memory),
-        Setting{"TransferMeshOptions::edge"}, Setting{"GatheringOptions::rays"},
-        Setting{"TransferOptions::order"}));
+        vertices, inUnits(needed), Setting{"TransferOptions::memory"},
+        fmt::format("{:.3g} MB", options.memory), Setting{"TransferMeshOptions::edge"},
+        Setting{"GatheringOptions::rays"}, Setting{"TransferOptions::order"}));
 }
 
 /// Numbers of passes and of clusters in a checkpoint, beyond those of vertices.
@@ -254,7 +254,9 @@ double raysPerSecond(const Transferred& done) {
 }
 
 Transferred transfer(const std::string& path, const std::string& folder,
-                     const TransferOptions& options, const Listener& listener) {
+                     const TransferOptions& given, const Listener& listener) {
+    TransferOptions options = given;
+    std::erase(options.clusters, 0U);
     Transferred done{.scene = path, .options = options};
     const scene::Scene read = scene::readScene(path, scene::Purpose::transport);
     const std::vector<const Camera*> cameras = camerasOf(read, options.camera);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <jobs/common/listener.h>
+#include <jobs/common/option_row.h>
 #include <jobs/source/quality.h>
 
 #include <hshfit/precomputed_transfer/interreflection.h>
@@ -27,9 +28,6 @@ inline constexpr std::array<std::string_view, 3> transferKinds{"unshadowed", "sh
                                                                "interreflected"};
 inline constexpr std::array<std::string_view, 3> transferSides{"automatic", "front", "both"};
 
-/// The most memory of a front end, unless told otherwise: 4096 MB.
-inline constexpr std::size_t defaultTransferMemory = 4'096'000'000;
-
 struct TransferOptions {
     TransferKind kind = TransferKind::interreflected;
     int passes = 5;      ///< of interreflection; the paper's number
@@ -38,8 +36,8 @@ struct TransferOptions {
     std::size_t rays = 2025;
     std::uint64_t seed = 1;
     TransferMeshOptions mesh = {};
-    std::size_t memory = std::size_t{4} << 30;  ///< the most that may be needed, bytes
-    /// Numbers of clusters to try for matrices; empty: they are not compressed.
+    double memory = 4096;  ///< the most that may be needed, MB
+    /// Numbers of clusters to try for matrices; empty or 0: they are not compressed.
     std::vector<std::size_t> clusters = {16, 64, 256};
     std::size_t components = 16;  ///< the most of a cluster
     /// The smallest of the compressed forms with at most this error is written, or the best with at
@@ -59,6 +57,7 @@ struct TransferOptions {
     bool resume = false;
     bool force = false;  ///< replace existing files
 };
+OptionRows<TransferOptions> transferOptions();
 
 /// The distance of a picture by transfer from one by path tracing.
 struct TransferPictureError {
