@@ -1,6 +1,7 @@
 #include "command.h"
+#include "command_rows.h"
 #include "documents.h"
-#include "within.h"
+#include "job_options.h"
 
 #include <hshfit/error.h>
 
@@ -135,9 +136,12 @@ void runIrradiance(IrradianceArguments arguments, const Globals& globals) {
 
 }  // namespace
 
+OptionTables irradianceRows() {
+    return {jobs::irradianceOptions().rows};
+}
+
 void addIrradiance(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<IrradianceArguments>();
-    jobs::IrradianceOptions& options = arguments->options;
     command
         .add_option("SPEC", arguments->specs,
                     "One or more lights, which add up: kind:key=value,…, the path of a picture, or "
@@ -152,19 +156,7 @@ void addIrradiance(CLI::App& command, Globals& globals) {
         .add_option("--for", arguments->engine,
                     "One of these, with the light turned as its own import of panoramas does")
         ->excludes("--convention");
-    command.add_option("--order", options.order, "Bands of the irradiance")
-        ->check(within(jobs::bounds::irradianceOrder))
-        ->capture_default_str();
-    command
-        .add_option("--window", options.window,
-                    "Against ringing: none, hann, lanczos or least-negative")
-        ->check(CLI::IsMember({"none", "hann", "lanczos", "least-negative"}))
-        ->capture_default_str();
-    command.add_option("--normals", options.normals, "Normals at which the error is taken")
-        ->check(within(jobs::bounds::normals))
-        ->capture_default_str();
-    command.add_option("--by-normal", options.byNormal,
-                       "CSV of direct and approximate irradiance at each of them");
+    addOptions(command, jobs::irradianceOptions(), arguments->options);
     command.callback([arguments, &globals] { runIrradiance(*arguments, globals); });
 }
 

@@ -1,6 +1,7 @@
 #include "command.h"
+#include "command_rows.h"
+#include "job_options.h"
 #include "measured_numbers.h"
-#include "within.h"
 
 #include <hshfit/coefficients/light_coefficients.h>
 #include <hshfit/error.h>
@@ -150,35 +151,22 @@ void runLight(LightArguments& arguments, Globals& globals) {
 
 }  // namespace
 
+OptionTables lightRows() {
+    return {jobs::lightOptions().rows};
+}
+
 void addLight(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<LightArguments>();
-    jobs::LightOptions& options = arguments->options;
     command
         .add_option("SPEC", arguments->specs,
                     "One or more lights, which add up: kind:key=value,…, the path of a picture, or "
                     "PATH:convention=NAME of nine numbers (docs/explanation/irradiance.md)")
         ->required();
     command.add_option("-o,--output", arguments->output, "File of coefficients, .json")->required();
-    command.add_option("--basis", options.basis, "sh; with --normal any of hshfit list bases")
-        ->capture_default_str();
-    command.add_option("--order", options.order, "Number of bands: l = 0 .. order-1")
-        ->check(within(jobs::bounds::lightOrder))
-        ->capture_default_str();
     command.add_option("--normal", arguments->normal,
                        "THETA,PHI in degrees: the hemisphere about it, in its own frame "
                        "(default: the whole sphere)");
-    command.add_flag("--wavelets", options.wavelets,
-                     "A curve of SOHO wavelets too: the best n^2 terms of each channel");
-    command.add_flag("--split-sun", options.splitSun,
-                     "Split one picture into a sun: and NAME_rest.exr beside NAME.json, whose sum "
-                     "is the picture; exit code 3 where it has no sun");
-    command.add_flag("--condon-shortley", options.condonShortley,
-                     "Give functions of odd m the Condon-Shortley sign");
-    command
-        .add_option("--tolerance", options.tolerance,
-                    "Relative error that quadrature is refined to, where light has no closed form")
-        ->check(within(jobs::bounds::tolerance))
-        ->capture_default_str();
+    addOptions(command, jobs::lightOptions(), arguments->options);
     command.callback([arguments, &globals] { runLight(*arguments, globals); });
 }
 

@@ -1,6 +1,7 @@
 #include "command.h"
+#include "command_rows.h"
 #include "documents.h"
-#include "within.h"
+#include "job_options.h"
 
 #include <jobs/exports/sample.h>
 
@@ -15,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct SampleArguments {
-    std::string spec, outgoing = "45,0", method = "auto", output;
+    std::string spec, outgoing = "45,0", output;
     jobs::SampleOptions options;
 };
 
@@ -94,7 +95,6 @@ std::string textOf(const jobs::Sampled& done, const std::string& output) {
 
 void runSample(SampleArguments& arguments, const Globals& globals) {
     arguments.options.outgoing = parseDirection(arguments.outgoing, "--outgoing");
-    arguments.options.method = jobs::sampleMethod(arguments.method);
     const jobs::Sampled done = jobs::sample(arguments.spec, arguments.output, arguments.options);
     if (!done.reflects)
         note(globals, "f is 0 at this outgoing direction: samples are drawn from the cosine");
@@ -104,35 +104,19 @@ void runSample(SampleArguments& arguments, const Globals& globals) {
 
 }  // namespace
 
+OptionTables sampleRows() {
+    return {jobs::sampleOptions().rows};
+}
+
 void addSample(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<SampleArguments>();
-    jobs::SampleOptions& options = arguments->options;
     command.add_option("SPEC", arguments->spec, "BRDF, coefficient file or sidecar of an export")
         ->required();
     command.add_option("--outgoing", arguments->outgoing, "Outgoing direction THETA,PHI, degrees")
         ->capture_default_str();
-    command.add_option("--count", options.count, "Directions to draw")
-        ->check(within(jobs::bounds::sampleCount))
-        ->capture_default_str();
     command.add_option("-o,--output", arguments->output,
                        "CSV of the directions, densities and weights");
-    command
-        .add_option("--method", arguments->method,
-                    "Densities to draw from: auto (the model's own; else proposal and table), "
-                    "table, proposal (two fitted GGX lobes), stored (the proposal of an export, "
-                    "as its shaders draw) or cosine")
-        ->capture_default_str();
-    command.add_option("--seed", options.seed, "Seed of the random numbers")->capture_default_str();
-    command
-        .add_option("--elevations", options.elevations,
-                    "Outgoing elevations in the efficiency report")
-        ->check(CLI::Range(0, 1000))
-        ->capture_default_str();
-    command
-        .add_option("--trials", options.trials,
-                    "Samples that each row of the report is measured with")
-        ->check(CLI::Range(1, 100000000))
-        ->capture_default_str();
+    addOptions(command, jobs::sampleOptions(), arguments->options);
     command.callback([arguments, &globals] { runSample(*arguments, globals); });
 }
 

@@ -25,7 +25,6 @@ using jobs::lightingWords;
 using jobs::lossWords;
 using jobs::modelWords;
 using jobs::splitWords;
-using jobs::windowWords;
 using jobs::withAll;
 using jobs::wordsOf;
 
@@ -80,7 +79,6 @@ constexpr ValueRow valueRows[] = {
     {"illuminate", "--output", {nullptr, Syntax::word, Files::folder}},
     {"import", "FILE", {nullptr, Syntax::word, Files::read, ""}},
     {"info", "SPEC", {nullptr, Syntax::either, Files::read, ""}},
-    {"irradiance", "--by-normal", {nullptr, Syntax::word, Files::written, ".csv"}},
     {"irradiance", "SPEC", {nullptr, Syntax::light, Files::read, ""}},
     {"library", "--add-to", {nullptr, Syntax::word, Files::read, ""}},
     {"library", "--bands", {nullptr, Syntax::word, Files::read, ".csv"}},
@@ -118,7 +116,6 @@ constexpr ValueRow valueRows[] = {
     {"", "--records", {nullptr, Syntax::word, Files::added}},
     {"", "--reference", {nullptr, Syntax::word, Files::read, ""}},
     {"", "--source", {nullptr, Syntax::brdf, Files::read, ""}},
-    {"", "--window", {windowWords}},
     {"", "A", {nullptr, Syntax::brdf, Files::read, ""}},
     {"", "B", {nullptr, Syntax::brdf, Files::read, ""}},
     {"", "BASIS", {basisWords}},

@@ -138,20 +138,20 @@ py::dict described(const py::object& spec, bool rgb, const py::object& progress)
     return out;
 }
 
-py::dict sampled(const py::object& spec, const py::object& outgoing, std::size_t count,
-                 std::uint64_t seed, const std::string& method) {
-    requireWithin("count", count, jobs::bounds::sampleCount);
+/// The options of sample(); it makes no report.
+Options optionsOf(jobs::SampleOptions& options) {
+    return only(boundOptions(jobs::sampleOptions(), options), {"count", "method", "seed"});
+}
+
+py::dict sampled(const py::object& spec, const py::object& outgoing, const py::kwargs& keywords) {
+    jobs::SampleOptions options{.elevations = 0};
+    const py::object progress = optionsFrom(keywords, optionsOf(options));
     const std::string source = pathOf(spec, "spec");
     const std::vector<Direction> wo = directionsIn(vectorsOf(outgoing, "wo"), "wo");
     if (wo.size() != 1) throw UsageError("wo: one direction, of shape (3,)");
-    const jobs::SampleOptions options{.method = jobs::sampleMethod(method),
-                                      .outgoing = wo.front(),
-                                      .count = count,
-                                      .seed = seed,
-                                      .elevations = 0};
+    options.outgoing = wo.front();
     jobs::Sampled done;
-    watched(py::none(), {},
-            [&](const jobs::Listener&) { done = jobs::sample(source, "", options); });
+    watched(progress, {}, [&](const jobs::Listener&) { done = jobs::sample(source, "", options); });
     std::vector<Direction> drawn;
     std::vector<double> densities, weights;
     for (const jobs::DrawnDirection& one : done.drawn) {
@@ -203,14 +203,14 @@ open() takes, a Brdf. Raises InputError that names the file and the field.)");
                R"(The health of a BRDF, measured by evaluating it: a dict with "brdf", "min", "max",
 "warnings", "health" (coverage, negative values, reciprocity, largest reflectance over wo,
 largest albedo over wi) and "repairs".)");
-    const jobs::SampleOptions samples;
-    module.def(
-        "sample", sampled, py::arg("spec"), py::arg("wo"), py::kw_only(),
-        py::arg("count") = samples.count, py::arg("seed") = samples.seed,
-        py::arg("method") = "auto",
-        R"(Draw incident directions in proportion to f cos(theta_i) for the outgoing direction wo
+    jobs::SampleOptions samples;
+    define(
+        module,
+        {"sample", "spec: Path, wo: ArrayLike", optionsOf(samples), "Row",
+         R"(Draw incident directions in proportion to f cos(theta_i) for the outgoing direction wo
 (3,). Returns a dict: "wi" (n, 3), "pdf" (n,) in 1/sr, "weights" (n, channels) = f cos(theta_i) /
-pdf, "parts". method: "auto", "table", "proposal", "stored" or "cosine".)");
+pdf, "parts".)"},
+        sampled, py::arg("spec"), py::arg("wo"));
 }
 
 }  // namespace hshfit::python

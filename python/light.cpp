@@ -1,5 +1,6 @@
 #include "answers.h"
 #include "arrays.h"
+#include "job_options.h"
 #include "rotation.h"
 #include "watched.h"
 
@@ -72,17 +73,18 @@ std::vector<std::string> specificationsOf(const py::object& specs) {
     return texts;
 }
 
-std::shared_ptr<Lit> projected(const py::object& specs, const std::string& basis, int order,
-                               const py::object& normal, bool condonShortley, double tolerance,
-                               bool wavelets, const py::object& splitSun) {
-    requireWithin("order", order, jobs::bounds::lightOrder);
-    requireWithin("tolerance", tolerance, jobs::bounds::tolerance);
+/// The options of light(), but for the sun, which is split off with the name of a file.
+Options optionsOf(jobs::LightOptions& options) {
+    return without(boundOptions(jobs::lightOptions(), options), {"split-sun"});
+}
+
+std::shared_ptr<Lit> projected(const py::object& specs, const py::kwargs& keywords) {
     jobs::LightOptions options;
-    options.basis = basis;
-    options.order = order;
-    options.condonShortley = condonShortley;
-    options.tolerance = tolerance;
-    options.wavelets = wavelets;
+    Keywords given(keywords);
+    given.set(optionsOf(options));
+    const py::object normal = given.take("normal"), splitSun = given.take("split_sun");
+    const py::object progress = given.take("progress");
+    given.finish();
     options.splitSun = !splitSun.is_none();
     const std::string output = options.splitSun ? pathOf(splitSun, "split_sun") : "";
     if (options.splitSun && output.empty())
@@ -94,7 +96,7 @@ std::shared_ptr<Lit> projected(const py::object& specs, const std::string& basis
     }
     const std::vector<std::string> texts = specificationsOf(specs);
     jobs::ProjectedLight done;
-    watched(py::none(), {},
+    watched(progress, {},
             [&](const jobs::Listener&) { done = jobs::light(texts, output, options); });
     return std::make_shared<Lit>(Lit{.light = std::move(done.light),
                                      .bands = std::move(done.bands),
@@ -195,11 +197,23 @@ py::dict errorsDict(const IrradianceErrors& errors) {
     return out;
 }
 
-py::dict irradianceOfSpecs(const py::object& specs, int order, const std::string& window,
-                           std::size_t normals, const std::string& convention,
-                           const std::string& engine) {
-    requireWithin("order", order, jobs::bounds::irradianceOrder);
-    requireWithin("normals", normals, jobs::bounds::normals);
+/// The options of irradiance(), which writes no file.
+Options optionsOf(jobs::IrradianceOptions& options) {
+    return without(boundOptions(jobs::irradianceOptions(), options), {"by-normal"});
+}
+
+std::string wordOf(const py::object& word) {
+    return word.is_none() ? std::string() : py::str(word).cast<std::string>();
+}
+
+py::dict irradianceOfSpecs(const py::object& specs, const py::kwargs& keywords) {
+    jobs::IrradianceOptions options;
+    Keywords given(keywords);
+    given.set(optionsOf(options));
+    const std::string convention = wordOf(given.take("convention")),
+                      engine = wordOf(given.take("engine"));
+    const py::object progress = given.take("progress");
+    given.finish();
     const std::vector<std::string> texts = specificationsOf(specs);
     if (!convention.empty() && !engine.empty())
         throw UsageError("irradiance: convention and engine are both given; valid: one of the two");
@@ -207,13 +221,10 @@ py::dict irradianceOfSpecs(const py::object& specs, int order, const std::string
     const auto chosen = name.empty() ? std::vector<const Convention*>{} : selectConventions(name);
     if (!engine.empty() && chosen.size() != 1)
         throw UsageError("irradiance: engine='all'; valid: one engine");
-    const double turn = engine.empty() ? 0 : chosen.front()->turn;
+    if (!engine.empty()) options.turn = chosen.front()->turn;
     jobs::LitSurface done;
-    watched(py::none(), {}, [&](const jobs::Listener&) {
-        done = jobs::irradianceOfLight(
-            texts,
-            {.order = order, .window = window, .normals = normals, .turn = turn, .byNormal = {}});
-    });
+    watched(progress, {},
+            [&](const jobs::Listener&) { done = jobs::irradianceOfLight(texts, options); });
     py::dict out, engines;
     out["light"] = done.light;
     out["radiance"] = nineArray(done.radiance);
@@ -236,33 +247,36 @@ py::dict irradianceOfSpecs(const py::object& specs, int order, const std::string
 
 void bindLight(py::module_& module) {
     bindClass(module);
-    const jobs::LightOptions options;
-    module.def("light", projected, py::arg("spec"), py::kw_only(), py::arg("basis") = options.basis,
-               py::arg("order") = options.order, py::arg("normal") = py::none(),
-               py::arg("condon_shortley") = options.condonShortley,
-               py::arg("tolerance") = options.tolerance, py::arg("wavelets") = options.wavelets,
-               py::arg("split_sun") = py::none(),
-               R"(Project light onto a basis.
+    jobs::LightOptions options;
+    define(module,
+           {"light",
+            "spec: LightLike",
+            optionsOf(options),
+            "Light",
+            R"(Project light onto a basis.
 
-spec     a picture, coefficients of light, or a kind of catalog("lights") ("sky:type=12,
-         elevation=40"); joined by " + ", or as a sequence, they add up
-basis    "sh" for the sphere; any for the hemisphere about normal=(theta, phi) in degrees
-wavelets the captured energy of the best SOHO wavelets too
-split_sun  NAME.json for the coefficients of one picture, which NAME_rest.exr beside it and a sun:
-         add up to; InputError where it has no sun
+spec: a picture, coefficients of light, or a kind of catalog("lights") ("sky:type=12,elevation=40");
+joined by " + ", or as a sequence, they add up. basis: "sh" for the sphere; any for the hemisphere
+about normal=(theta, phi) in degrees. split_sun: NAME.json for the coefficients of one picture,
+which NAME_rest.exr beside it and a sun: add up to; InputError where it has no sun.
 
-Returns a Light.)");
-    const jobs::IrradianceOptions irradiance;
-    module.def("irradiance", irradianceOfSpecs, py::arg("spec"), py::kw_only(),
-               py::arg("order") = irradiance.order, py::arg("window") = irradiance.window,
-               py::arg("normals") = irradiance.normals, py::arg("convention") = "",
-               py::arg("engine") = "",
-               R"(The irradiance of light by nine coefficients (Ramamoorthi & Hanrahan 2001).
+Returns a Light.)",
+            {{"normal", "Optional[ArrayLike]"}, {"split_sun", "Optional[Path]"}}},
+           projected, py::arg("spec"));
+    jobs::IrradianceOptions irradiance;
+    define(module,
+           {"irradiance",
+            "spec: LightLike",
+            optionsOf(irradiance),
+            "Row",
+            R"(The irradiance of light by nine coefficients (Ramamoorthi & Hanrahan 2001).
 
 Returns a dict: "radiance" and "irradiance" (9, 3) in the order l(l+1)+m, "error" against direct
 integration ("maximum", "mean", relative to the mean irradiance), and for `convention` (a
 name of `hshfit irradiance --convention`, or "all") "engines" with their numbers and shader code.
-`engine` in its place turns the light as that engine's own import of panoramas does.)");
+`engine` in its place turns the light as that engine's own import of panoramas does.)",
+            {{"convention", "Optional[str]"}, {"engine", "Optional[str]"}}},
+           irradianceOfSpecs, py::arg("spec"));
     module.def(
         "_read_light",
         [](const std::string& path) {

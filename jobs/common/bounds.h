@@ -31,7 +31,8 @@ inline constexpr Bounds<int> rotationTables{2, 10001};
 inline constexpr Bounds<int> lightOrder{1, 1000}, irradianceOrder{1, 100}, normals{16, 1000000};
 
 // Samples of a BRDF.
-inline constexpr Bounds<int> sampleCount{0, 10000000};
+inline constexpr Bounds<int> sampleCount{0, 10000000}, sampleElevations{0, 1000},
+    sampleTrials{1, 100000000};
 
 // Pictures.
 inline constexpr Bounds<int> pictureSize{8, 4096}, pictureSamples{1, 16};

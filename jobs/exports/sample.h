@@ -1,5 +1,7 @@
 #pragma once
 
+#include <jobs/common/option_row.h>
+
 #include <hshfit/brdf/brdf.h>
 #include <hshfit/sampling/efficiency.h>
 #include <hshfit/sampling/make_sampler.h>
@@ -27,6 +29,8 @@ struct SampleOptions {
     std::size_t elevations = 7;  ///< of the report, from 0 to 89 degrees; 0: none
     std::size_t trials = 20000;  ///< samples behind each row of the report
 };
+/// Without the outgoing direction.
+OptionRows<SampleOptions> sampleOptions();
 
 /// A sample and its weight f cos(theta_i) / pdf, per channel.
 struct DrawnDirection {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <jobs/common/option_row.h>
+
 #include <hshfit/irradiance/conventions.h>
 #include <hshfit/irradiance/irradiance.h>
 #include <hshfit/irradiance/zonal_form.h>
@@ -16,6 +18,8 @@ struct IrradianceOptions {
     double turn = 0;              ///< degrees about +z by which the light is turned first
     std::string byNormal;         ///< CSV of the irradiances at them; empty: none
 };
+/// Without the turn.
+OptionRows<IrradianceOptions> irradianceOptions();
 
 struct LitSurface {
     std::string light;                 ///< the specification

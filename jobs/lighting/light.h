@@ -1,5 +1,7 @@
 #pragma once
 
+#include <jobs/common/option_row.h>
+
 #include <hshfit/coefficients/light_coefficients.h>
 #include <hshfit/light/light_nodes.h>
 #include <hshfit/light/sun_split.h>
@@ -21,6 +23,8 @@ struct LightOptions {
     bool wavelets = false;                   ///< the captured energy of the best SOHO wavelets too
     bool splitSun = false;                   ///< the sun of a picture and the rest beside the file
 };
+/// Without the hemisphere's normal.
+OptionRows<LightOptions> lightOptions();
 
 /// A picture as a sun and the rest.
 struct SplitLight {

@@ -2,6 +2,7 @@
 #include "lighting_trade.h"
 
 #include <jobs/common/option_words.h>
+#include <jobs/exports/export.h>
 
 namespace hshfit::jobs {
 namespace {
@@ -18,17 +19,20 @@ constexpr OptionRow lightingRows[] = {
         "Tables, light and shaders for environments and area lights in place of textures: all, or "
         "of coefficients, split-sum, ltc and prefiltered those named; with --light the light that "
         "is written; shaders of materials that are not isotropic take a tangent"}
-        .takes({lightingWords, Syntax::list}),
+        .takes({lightingWords, Syntax::list})
+        .onlyFor(exports::lighting),
     OptionRow{"engine",
               at<&LightingExportOptions::errors, &LightingErrorOptions::tables,
                  &LightingTableOptions::engine>,
               "Of --lighting prefiltered, the engine whose environment is looked up"}
-        .takes({.words = engineWords}),
+        .takes({.words = engineWords})
+        .onlyFor(exports::lighting),
     OptionRow{"lobes",
               at<&LightingExportOptions::errors, &LightingErrorOptions::tables,
                  &LightingTableOptions::lobes>,
               "Of --lighting prefiltered, lookups besides the diffuse one, 1 to 3"}
-        .within(Bounds<int>{1, 3}),
+        .within(Bounds<int>{1, 3})
+        .onlyFor(exports::lighting),
 };
 
 constexpr OptionRow tradeRows[] = {

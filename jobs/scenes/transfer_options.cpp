@@ -11,6 +11,7 @@ namespace {
 
 using options::at;
 using options::spelled;
+using MeshSides = decltype(TransferMeshOptions::sides);
 
 /// The place of a name among those of an enumeration.
 template <class Enumeration, std::size_t count>
@@ -39,11 +40,11 @@ std::vector<Word> transferKindWords() {
     return wordsIn(transferKinds);
 }
 
-Sides parseSides(const std::string& name) {
-    return numbered<Sides>(transferSides, name);
+MeshSides parseSides(const std::string& name) {
+    return numbered<MeshSides>(transferSides, name);
 }
 
-std::string_view sidesName(Sides sides) {
+std::string_view sidesName(MeshSides sides) {
     return transferSides[static_cast<std::size_t>(sides)];
 }
 

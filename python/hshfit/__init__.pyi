@@ -541,11 +541,12 @@ def light(
     *,
     basis: str = ...,
     order: int = ...,
-    normal: Optional[Tuple[float, float]] = ...,
+    wavelets: bool = ...,
     condon_shortley: bool = ...,
     tolerance: float = ...,
-    wavelets: bool = ...,
+    normal: Optional[ArrayLike] = ...,
     split_sun: Optional[Path] = ...,
+    progress: Progress = ...,
 ) -> Light: ...
 def irradiance(
     spec: LightLike,
@@ -553,8 +554,9 @@ def irradiance(
     order: int = ...,
     window: str = ...,
     normals: int = ...,
-    convention: str = ...,
-    engine: str = ...,
+    convention: Optional[str] = ...,
+    engine: Optional[str] = ...,
+    progress: Progress = ...,
 ) -> Row: ...
 def read(path: Path) -> Union[Coefficients, Form, Light, Brdf]: ...
 def convert(
@@ -599,7 +601,13 @@ def export(
 def import_coefficients(input: Path, output: Path, *, force: bool = ...) -> None: ...
 def describe(spec: Path, *, rgb: bool = ..., progress: Progress = ...) -> Row: ...
 def sample(
-    spec: Path, wo: ArrayLike, *, count: int = ..., seed: int = ..., method: str = ...
+    spec: Path,
+    wo: ArrayLike,
+    *,
+    count: int = ...,
+    method: str = ...,
+    seed: int = ...,
+    progress: Progress = ...,
 ) -> Row: ...
 def render(
     specs: Union[Path, Sequence[Path]],

@@ -211,8 +211,7 @@ TEST_F(Lighting, BadInputIsRefused) {
     expectError("export lambert" + out + " --lighting prefiltered --engine unrael", 2,
                 "did you mean 'unreal'", 1);
     expectError("export lambert" + out + " --lighting prefiltered --lobes 4", 2, "1 to 3", 1);
-    expectError("export " + path("plain.json") + out + " --lobes 2", 2, "--lighting prefiltered",
-                1);
+    expectError("export " + path("plain.json") + out + " --lobes 2", 2, "is for --lighting", 1);
     expectError("export lambert" + out + " --lighting ltc --engine unity", 2,
                 "--lighting prefiltered", 1);
     EXPECT_FALSE(fs::exists(path("out")));

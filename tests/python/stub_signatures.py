@@ -27,7 +27,7 @@ def updated(stubs):
     for name in hshfit.__all__:
         lines = signature(getattr(hshfit, name).__doc__ or "", name)
         if lines:
-            stubs = re.sub(rf"(?ms)^def {name}\(.*?\.\.\.\n(?=\S|$|\n)",
+            stubs = re.sub(rf"(?ms)^def {name}\(.*?\) -> [^\n]*: \.\.\.\n",
                            lambda _, lines=lines: lines, stubs)
     return stubs
 
