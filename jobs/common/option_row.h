@@ -1,16 +1,13 @@
 #pragma once
 
 #include <jobs/common/bounds.h>
+#include <jobs/common/option_members.h>
 
-#include <cstddef>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <typeinfo>
-#include <variant>
 #include <vector>
 
 namespace hshfit::jobs {
@@ -53,25 +50,6 @@ struct Values {
     bool complete = false;  ///< no other words than these
 };
 
-/// A member that is read and set as a word, such as an enumeration; "" stands for none.
-struct Spelled {
-    void* at;
-    std::string (*word)(const void* at);
-    void (*set)(void* at, const std::string& word);  ///< throws UsageError
-};
-
-/// A member of an options struct, where front ends read its default and set its value.
-using OptionValue =
-    std::variant<bool*, std::optional<bool>*, int*, std::size_t*, double*,
-                 std::optional<std::size_t>*, std::optional<double>*, std::string*,
-                 std::vector<std::string>*, std::vector<int>*, std::vector<std::size_t>*, Spelled>;
-
-/// The way to the member in a struct of the type `owner`.
-struct Member {
-    const std::type_info* owner;
-    OptionValue (*in)(void* options);
-};
-
 /// One option of a job. The command line with its help, its checks and its completion, the manual,
 /// and arguments, defaults, docstrings and stubs of Python come from this row.
 ///
@@ -95,23 +73,29 @@ struct OptionRow {
         row.range = {static_cast<double>(bounds.least), static_cast<double>(bounds.most)};
         return row;
     }
-    constexpr OptionRow takes(const Values& what) const { return with(&OptionRow::values, what); }
+    constexpr OptionRow takes(const Values& what) const {
+        OptionRow row = *this;
+        row.values = what;
+        return row;
+    }
     constexpr OptionRow orWithout(std::string_view help_) const {
-        return with(&OptionRow::without, help_);
+        OptionRow row = *this;
+        row.without = help_;
+        return row;
     }
     constexpr OptionRow byDefault(std::string_view words) const {
-        return with(&OptionRow::fallback, words);
+        OptionRow row = *this;
+        row.fallback = words;
+        return row;
     }
     constexpr OptionRow inPython(std::string_view word) const {
-        return with(&OptionRow::keyword, word);
-    }
-    constexpr OptionRow onlyFor(unsigned kinds) const { return with(&OptionRow::inputs, kinds); }
-
-private:
-    template <class Value>
-    constexpr OptionRow with(Value OptionRow::*member, const Value& value) const {
         OptionRow row = *this;
-        row.*member = value;
+        row.keyword = word;
+        return row;
+    }
+    constexpr OptionRow onlyFor(unsigned kinds) const {
+        OptionRow row = *this;
+        row.inputs = kinds;
         return row;
     }
 };
@@ -124,58 +108,6 @@ struct OptionRows {
 
 /// As "max_evaluations".
 std::string keywordOf(const OptionRow& row);
-
-namespace options {
-
-template <class Struct, class Value>
-Struct ownerOf(Value Struct::*member);
-
-template <class Struct>
-auto& memberOf(Struct& options, auto first, auto... rest) {
-    if constexpr (sizeof...(rest) == 0)
-        return options.*first;
-    else
-        return memberOf(options.*first, rest...);
-}
-
-template <auto First, auto... Rest>
-auto& memberIn(void* options) {
-    using Struct = decltype(ownerOf(First));
-    return memberOf(*static_cast<Struct*>(options), First, Rest...);
-}
-
-/// A member, or a member of a member.
-template <auto First, auto... Rest>
-constexpr Member at = {&typeid(decltype(ownerOf(First))), [](void* options) -> OptionValue {
-                           return &memberIn<First, Rest...>(options);
-                       }};
-
-/// The same of a member that `parse` reads and `name` writes as a word.
-template <auto parse, auto name, auto First, auto... Rest>
-constexpr Member spelled = {
-    &typeid(decltype(ownerOf(First))), [](void* options) -> OptionValue {
-        auto& member = memberIn<First, Rest...>(options);
-        using Type = std::remove_reference_t<decltype(member)>;
-        return Spelled{&member,
-                       [](const void* at) {
-                           const auto& value = *static_cast<const Type*>(at);
-                           if constexpr (std::is_enum_v<Type>)
-                               return std::string(name(value));
-                           else
-                               return value ? std::string(name(*value)) : std::string();
-                       },
-                       [](void* at, const std::string& word) {
-                           auto& value = *static_cast<Type*>(at);
-                           if constexpr (std::is_enum_v<Type>)
-                               value = parse(word);
-                           else if (word.empty())
-                               value.reset();
-                           else
-                               value = parse(word);
-                       }};
-    }};
-
-}  // namespace options
 
 /// An option of an options struct, in the place where its value lies.
 struct BoundOption {

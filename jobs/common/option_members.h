@@ -1,0 +1,86 @@
+#pragma once
+
+// Members of options structs, in which front ends read defaults and set values.
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <typeinfo>
+#include <variant>
+#include <vector>
+
+namespace hshfit::jobs {
+
+/// A member that is read and set as a word, such as an enumeration; "" stands for none.
+struct Spelled {
+    void* at;
+    std::string (*word)(const void* at);
+    void (*set)(void* at, const std::string& word);  ///< throws UsageError
+};
+
+/// A member of an options struct, where front ends read its default and set its value.
+using OptionValue =
+    std::variant<bool*, std::optional<bool>*, int*, std::size_t*, double*,
+                 std::optional<std::size_t>*, std::optional<double>*, std::string*,
+                 std::vector<std::string>*, std::vector<int>*, std::vector<std::size_t>*, Spelled>;
+
+/// The way to the member in a struct of the type `owner`.
+struct Member {
+    const std::type_info* owner;
+    OptionValue (*in)(void* options);
+};
+
+namespace options {
+
+template <class Struct, class Value>
+Struct ownerOf(Value Struct::*member);
+
+template <class Struct>
+auto& memberOf(Struct& options, auto first, auto... rest) {
+    if constexpr (sizeof...(rest) == 0)
+        return options.*first;
+    else
+        return memberOf(options.*first, rest...);
+}
+
+template <auto First, auto... Rest>
+auto& memberIn(void* options) {
+    using Struct = decltype(ownerOf(First));
+    return memberOf(*static_cast<Struct*>(options), First, Rest...);
+}
+
+/// A member, or a member of a member.
+template <auto First, auto... Rest>
+constexpr Member at = {&typeid(decltype(ownerOf(First))), [](void* options) -> OptionValue {
+                           return &memberIn<First, Rest...>(options);
+                       }};
+
+/// The same of a member that `parse` reads and `name` writes as a word.
+template <auto parse, auto name, auto First, auto... Rest>
+constexpr Member spelled = {
+    &typeid(decltype(ownerOf(First))), [](void* options) -> OptionValue {
+        auto& member = memberIn<First, Rest...>(options);
+        using Type = std::remove_reference_t<decltype(member)>;
+        return Spelled{&member,
+                       [](const void* at) {
+                           const auto& value = *static_cast<const Type*>(at);
+                           if constexpr (std::is_enum_v<Type>)
+                               return std::string(name(value));
+                           else
+                               return value ? std::string(name(*value)) : std::string();
+                       },
+                       [](void* at, const std::string& word) {
+                           auto& value = *static_cast<Type*>(at);
+                           if constexpr (std::is_enum_v<Type>)
+                               value = parse(word);
+                           else if (word.empty())
+                               value.reset();
+                           else
+                               value = parse(word);
+                       }};
+    }};
+
+}  // namespace options
+
+}  // namespace hshfit::jobs
