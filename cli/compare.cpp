@@ -59,6 +59,8 @@ std::string text(const jobs::Compared& compared, const CompareArguments& argumen
     if (compared.picture) out += "  " + indented(textOf(*compared.picture));
     if (const auto side = transmissionSide(compared.a); !side.empty())
         out += fmt::format("  {}: no picture error, whose lit spheres reflect\n", side);
+    if (!compared.undrawn.empty())
+        out += fmt::format("  no picture error: {} is no reflectance\n", compared.undrawn);
     for (const MetricValue& result : compared.metrics) out += metricText(result);
     if (compared.pairs) out += "  " + indented(textOf(*compared.pairs));
     if (compared.samples) {

@@ -18,6 +18,7 @@ bool hasOneDirection(const Brdf& brdf) {
 
 std::optional<PictureError> pictureErrorOf(const Brdf& f, const Brdf& g) {
     if (hasOneDirection(f) || hasOneDirection(g) || transmits(f)) return std::nullopt;
+    if (f.channels().kind == Channels::Kind::named) return std::nullopt;
     return pictureError(f, g);
 }
 
