@@ -60,7 +60,10 @@ std::string text(const jobs::Compared& compared, const CompareArguments& argumen
                                   compared.outgoing.spec());
     if (compared.picture) out += "  " + indented(textOf(*compared.picture));
     if (const auto side = transmissionSide(compared.a); !side.empty())
-        out += fmt::format("  {}: no picture error, whose lit spheres reflect\n", side);
+        out += fmt::format("  {}{}\n", side,
+                           compared.picture ? ": drawn as if it were reflected" : "");
+    if (!compared.undrawn.empty())
+        out += fmt::format("  no picture error: {} is no reflectance\n", compared.undrawn);
     for (const MetricValue& result : compared.metrics) out += metricText(result);
     if (compared.pairs) out += "  " + indented(textOf(*compared.pairs));
     if (compared.samples) {

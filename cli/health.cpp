@@ -68,7 +68,7 @@ Json exchangeJson(const Brdf& brdf, const Health::Exchange& exchange) {
 }
 
 Json reciprocityJson(const jobs::BrdfInfo& info) {
-    const Health& health = info.health;
+    const Health& health = *info.health;
     Json reciprocity = {{"defect", health.reciprocityDefect}};
     if (health.worstExchange)
         reciprocity["worst"] = exchangeJson(*info.brdf, *health.worstExchange);
@@ -82,7 +82,7 @@ Json reciprocityJson(const jobs::BrdfInfo& info) {
 }
 
 Json healthJson(const jobs::BrdfInfo& info) {
-    const Health& health = info.health;
+    const Health& health = *info.health;
     Json repairs = Json::array();
     for (const auto& repair : info.repairs)
         repairs.push_back({{"name", repair.name}, {"reason", repair.reason}});
@@ -165,8 +165,9 @@ void describeHealth(const jobs::BrdfInfo& info, Json& document) {
         document["census"] = censusJson(*info.census);
         document["axes"] = axesJson(info.axes);
     }
-    document["reflectance"] = albedoJson(info.health.reflectances);
-    document["albedo"] = albedoJson(info.health.albedos);
+    if (!info.health) return;
+    document["reflectance"] = albedoJson(info.health->reflectances);
+    document["albedo"] = albedoJson(info.health->albedos);
     document["health"] = healthJson(info);
 }
 
@@ -176,6 +177,7 @@ std::string healthText(const Json& document) {
     for (const Json& axis : document.value("axes", Json::array())) {
         text += factLine("sampled " + axis["name"].get<std::string>(), axisText(axis));
     }
+    if (!document.contains("health")) return text;  // no channel is a reflectance
     // Both are the same numbers for a reciprocal BRDF.
     const bool both = document["reflectance"] != document["albedo"];
     // A transmission lets light of one direction through, and shows radiance under uniform light.

@@ -50,7 +50,7 @@ py::dict factsOf(const Brdf& brdf) {
 Shared openedBrdf(const py::object& spec, bool rgb) {
     const std::string text = pathOf(spec, "spec");
     const py::gil_scoped_release released;
-    return jobs::openSource(text, rgb, jobs::Sides::either);
+    return jobs::openSource(text, rgb, jobs::Sides::eitherAndNamed);
 }
 
 Channels channelsOf(const py::object& argument) {

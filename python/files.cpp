@@ -111,26 +111,31 @@ void imported(const py::object& input, const py::object& output, bool force) {
     jobs::importCoefficients(from, to, {.force = force});
 }
 
+py::dict healthOf(const Health& measured) {
+    py::dict health;
+    health["pairs"] = measured.pairs;
+    health["coverage"] = measured.coverage;
+    health["values"] = measured.values;
+    health["negative"] = measured.negative;
+    health["not_finite"] = measured.notFinite;
+    health["reciprocity_defect"] = measured.reciprocityDefect;
+    health["largest_reflectance"] = measured.largestReflectance();
+    health["largest_albedo"] = measured.largestAlbedo();
+    return health;
+}
+
 py::dict described(const py::object& spec, bool rgb, const py::object& progress) {
     const std::string source = pathOf(spec, "spec");
     jobs::BrdfInfo info;
     watched(progress, {}, [&](const jobs::Listener& listener) {
         info = jobs::describeSource(source, rgb, listener);
     });
-    py::dict out, health;
+    py::dict out;
     out["brdf"] = std::shared_ptr<Brdf>(std::move(info.brdf));
     out["min"] = info.least;
     out["max"] = info.greatest;
     out["warnings"] = info.warnings;
-    health["pairs"] = info.health.pairs;
-    health["coverage"] = info.health.coverage;
-    health["values"] = info.health.values;
-    health["negative"] = info.health.negative;
-    health["not_finite"] = info.health.notFinite;
-    health["reciprocity_defect"] = info.health.reciprocityDefect;
-    health["largest_reflectance"] = info.health.largestReflectance();
-    health["largest_albedo"] = info.health.largestAlbedo();
-    out["health"] = health;
+    out["health"] = info.health ? py::object(healthOf(*info.health)) : py::none();
     py::dict repairs;
     for (const auto& repair : info.repairs)
         repairs[py::str(std::string(repair.name))] = repair.reason;

@@ -139,7 +139,7 @@ Source::Source(const py::object& argument, bool rgb, const char* name) : rgb_(rg
 }
 
 void Source::open() {
-    if (!brdf_) brdf_ = jobs::openSource(name_, rgb_, jobs::Sides::either);
+    if (!brdf_) brdf_ = jobs::openSource(name_, rgb_, jobs::Sides::eitherAndNamed);
 }
 
 void watched(const py::object& progress, std::span<Source* const> sources,

@@ -66,7 +66,7 @@ COMMANDS = {"pairs": ["eval lambert --pairs {path} -o {out}.csv"],
                                  "library decode {path}:a -o {out}.json",
                                  "library search {path} lambert"]}
 # Readers of Mueller matrices, and elements beside the default.
-MUELLER, ELEMENTS = {"nist", "scatmech", "pbsdf"}, ["m01", "m12", "m22", "dolp"]
+MUELLER, ELEMENTS = {"nist", "scatmech", "pbsdf"}, ["m01", "m12/m22", "m00/dolp", "all"]
 NUMBER = re.compile(rb"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 ODD_NUMBERS = [b"nan", b"NaN", b"-nan", b"inf", b"-inf", b"Infinity", b"1e308", b"-1e308", b"1e309",
                b"1e-320", b"1e99999", b"-0", b"0", b"-1", b"1", b"90", b"3.1415927", b"2147483647",

@@ -68,12 +68,10 @@ std::size_t endOfTerm(std::string_view spec, std::size_t start, bool (*isWhole)(
     return ends.front();
 }
 
-bool sameChannels(const Channels& a, const Channels& b) {
-    return a.kind == b.kind && a.wavelengths == b.wavelengths;
-}
-
 /// "wavelengths 400 to 700 nm (31)" and the like.
 std::string described(const Channels& channels) {
+    if (channels.kind == Channels::Kind::named)
+        return fmt::format("{} channels from {}", channels.count(), channels.names().front());
     if (channels.kind != Channels::Kind::spectral)
         return channels.kind == Channels::Kind::grey ? "grey" : "rgb";
     return fmt::format("{} wavelengths from {} to {} nm", channels.count(),
@@ -84,9 +82,8 @@ Channels mergedChannels(const std::vector<Sum::Term>& terms) {
     const Brdf* widest = terms.front().brdf.get();
     for (const Sum::Term& term : terms) {
         const Channels& channels = term.brdf->channels();
-        if (channels.kind == Channels::Kind::grey) continue;
-        if (widest->channels().kind == Channels::Kind::grey) widest = term.brdf.get();
-        if (!sameChannels(channels, widest->channels()))
+        if (widest->channels().serve(channels)) widest = term.brdf.get();
+        if (!channels.serve(widest->channels()))
             throw UsageError(
                 fmt::format("sum: '{}' is {} but '{}' is {}; all terms but grey ones "
                             "have to have the same channels",

@@ -15,7 +15,9 @@ namespace {
 UsageError noUncertainty(std::string_view text) {
     return UsageError(fmt::format(
         "'{}' is no uncertainty; valid: a relative part (2%), an absolute one in 1/sr (0.001), "
-        "their sum (2%+0.001), column, or a file NAME.csv",
+        "their sum (2%+0.001), column, or a file NAME.csv; with ',correlation:angle=3deg', "
+        "',correlation:wavelength=20nm' or ',covariance=FILE' behind it for errors that are not "
+        "independent",
         text));
 }
 

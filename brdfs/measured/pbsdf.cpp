@@ -120,8 +120,9 @@ struct PbsdfBrdf::Corners {
     bool any = false;
 };
 
-PbsdfBrdf::PbsdfBrdf(std::span<const unsigned char> bytes, std::string name, MuellerElement element)
-    : name_(std::move(name)), element_(std::move(element)), places_(element_.places()) {
+PbsdfBrdf::PbsdfBrdf(std::span<const unsigned char> bytes, std::string name,
+                     MuellerElements elements)
+    : name_(std::move(name)), elements_(std::move(elements)), places_(elements_.places()) {
     if (places_[0] != 0) places_.insert(places_.begin(), 0);
     const TensorFile file(bytes, name_);
     const Field& field = file.field("M");
@@ -137,17 +138,17 @@ PbsdfBrdf::PbsdfBrdf(std::span<const unsigned char> bytes, std::string name, Mue
     phiDifference_ = loadAngles(file, "phi_d", shape[0], -pi, pi, anglesAssumed_);
     thetaDifference_ = loadAngles(file, "theta_d", shape[1], 0, pi / 2, anglesAssumed_);
     thetaHalf_ = loadAngles(file, "theta_h", shape[2], 0, pi / 2, anglesAssumed_);
-    channels_ = Channels::spectral(loadWavelengths(file, shape[3]));
+    channels_ = elements_.channels(Channels::spectral(loadWavelengths(file, shape[3])));
     values_ = loadElements(file, field, places_);
-    laws_.nonNegative = element_.isReflectance() || element_.isDegree();
+    laws_.nonNegative = elements_.arePositive();
     laws_.isotropic = true;
 }
 
-std::unique_ptr<PbsdfBrdf> PbsdfBrdf::open(const std::string& path, MuellerElement element) {
+std::unique_ptr<PbsdfBrdf> PbsdfBrdf::open(const std::string& path, MuellerElements elements) {
     const MappedFile file(path);
-    const std::string name = element.isReflectance() ? path : path + ":mueller=" + element.name();
+    const std::string name = elements.isReflectance() ? path : path + ":mueller=" + elements.text();
     try {
-        auto brdf = std::make_unique<PbsdfBrdf>(file.bytes(), name, std::move(element));
+        auto brdf = std::make_unique<PbsdfBrdf>(file.bytes(), name, std::move(elements));
         file.checkIntact();
         return brdf;
     } catch (const InputError&) {
@@ -162,8 +163,8 @@ std::size_t PbsdfBrdf::vertex(std::size_t p, std::size_t d, std::size_t h) const
 
 bool PbsdfBrdf::hasValue(std::size_t vertex) const {
     bool zero = true;
-    for (std::size_t c = 0; c < channels_.count(); ++c) {
-        const float* values = at(vertex, c);
+    for (std::size_t w = 0; w < wavelengths(); ++w) {
+        const float* values = at(vertex, w);
         if (std::any_of(values, values + planes(), [](float v) { return std::isnan(v); }))
             return false;
         zero = zero && values[0] == 0;
@@ -201,17 +202,23 @@ void PbsdfBrdf::eval(const Direction& wo, DirectionBatch wi, double* out) const 
         if (!(wi.z[k] > 0)) continue;
         const Corners near = corners(wo, {wi.x[k], wi.y[k], wi.z[k]});
         if (!near.any) continue;
-        for (std::size_t c = 0; c < n; ++c) {
-            std::array<double, 3> sums{};
-            for (std::size_t i = 0; i < 8; ++i) {
-                if (!(near.weight[i] > 0)) continue;
-                const float* from = at(near.vertex[i], c) + (planes() - element_.places().size());
-                for (std::size_t p = 0; p < element_.places().size(); ++p)
-                    sums[p] += near.weight[i] * from[p];
-            }
-            out[c * wi.count + k] = element_.value(sums.data());
+        for (std::size_t w = 0; w < wavelengths(); ++w) {
+            const MuellerElements::Matrix matrix = matrixAt(near, w);
+            for (std::size_t e = 0; e < elements_.size(); ++e)
+                out[(e * wavelengths() + w) * wi.count + k] = elements_.value(e, matrix);
         }
     }
+}
+
+MuellerElements::Matrix PbsdfBrdf::matrixAt(const Corners& corners, std::size_t wavelength) const {
+    MuellerElements::Matrix matrix{};
+    for (std::size_t i = 0; i < 8; ++i) {
+        if (!(corners.weight[i] > 0)) continue;
+        const float* from = at(corners.vertex[i], wavelength);
+        for (std::size_t p = 0; p < planes(); ++p)
+            matrix[places_[p]] += corners.weight[i] * double{from[p]};
+    }
+    return matrix;
 }
 
 void PbsdfBrdf::coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const {
@@ -221,18 +228,26 @@ void PbsdfBrdf::coverage(const Direction& wo, DirectionBatch wi, unsigned char* 
     }
 }
 
-double PbsdfBrdf::nodeValue(std::size_t vertex, std::size_t channel) const {
-    const float* from = at(vertex, channel) + (planes() - element_.places().size());
-    if (element_.isReflectance()) return from[0];  // also below 0, to be counted
-    const std::array<double, 3> values{from[0], element_.isDegree() ? from[1] : 0.0,
-                                       element_.isDegree() ? from[2] : 0.0};
-    return element_.value(values.data());
+void PbsdfBrdf::addNode(std::size_t vertex, Census& census) const {
+    if (!hasValue(vertex)) {
+        census.invalid += channels_.count();
+        return;
+    }
+    Corners node;
+    node.vertex[0] = vertex, node.weight[0] = 1;
+    for (std::size_t w = 0; w < wavelengths(); ++w) {
+        const MuellerElements::Matrix matrix = matrixAt(node, w);
+        // Values of M00 below 0 are counted as they are.
+        if (elements_.isReflectance()) census.add(matrix[0]);
+        for (std::size_t e = 0; e < elements_.size() && !elements_.isReflectance(); ++e)
+            census.add(elements_.value(e, matrix));
+    }
 }
 
 Census PbsdfBrdf::census() const {
     const std::size_t n = channels_.count();
     Census census;
-    census.values = values_.size() / planes();
+    census.values = values_.size() / planes() / wavelengths() * n;
     for (std::size_t p = 0; p < phiDifference_.size(); ++p) {
         for (std::size_t d = 0; d < thetaDifference_.size(); ++d) {
             for (std::size_t h = 0; h < thetaHalf_.size(); ++h) {
@@ -241,13 +256,10 @@ Census PbsdfBrdf::census() const {
                 const double across = std::sin(thetaHalf_[h]) * std::sin(thetaDifference_[d]) *
                                       std::fabs(std::cos(phiDifference_[p]));
                 const std::size_t node = vertex(p, d, h);
-                if (along - across < 1e-6) {
+                if (along - across < 1e-6)
                     census.belowHorizon += n;
-                } else if (!hasValue(node)) {
-                    census.invalid += n;
-                } else {
-                    for (std::size_t c = 0; c < n; ++c) census.add(nodeValue(node, c));
-                }
+                else
+                    addNode(node, census);
             }
         }
     }
@@ -274,12 +286,11 @@ std::vector<Axis> PbsdfBrdf::axes() const {
 }
 
 std::vector<Fact> PbsdfBrdf::facts() const {
-    return {
-        {"format", "pbsdf"},
-        {"dimensions", fmt::format("{} x {} x {} x {}", phiDifference_.size(),
-                                   thetaDifference_.size(), thetaHalf_.size(), channels_.count())},
-        {"angles_assumed_evenly_spaced", anglesAssumed_},
-        muellerFact(element_)};
+    return {{"format", "pbsdf"},
+            {"dimensions", fmt::format("{} x {} x {} x {}", phiDifference_.size(),
+                                       thetaDifference_.size(), thetaHalf_.size(), wavelengths())},
+            {"angles_assumed_evenly_spaced", anglesAssumed_},
+            muellerFact(elements_)};
 }
 
 const Format& pbsdfFormat() {
@@ -298,7 +309,7 @@ const Format& pbsdfFormat() {
             },
         .parameters = {muellerParameter()},
         .open = [](const std::string& path, const Parameters& parameters) -> std::unique_ptr<Brdf> {
-            return PbsdfBrdf::open(path, muellerElement(parameters));
+            return PbsdfBrdf::open(path, muellerElements(parameters));
         },
     };
     return format;

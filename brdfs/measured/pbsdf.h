@@ -15,21 +15,23 @@ namespace hshfit::brdfs {
 /// Polarimetric Reflectance", ACM TOG 39(4)) in a tensor file (tensor_file.h): Mueller matrices
 /// M[phi_d][theta_d][theta_h][wavelength][4][4], f32, and the nodes phi_d, theta_d, theta_h (f32,
 /// radians, 1 x n) and wvls (u16, nm). The reader uses M00, the reflectance of unpolarised light in
-/// 1/sr, or another element (MuellerElement), whose Stokes vectors have the axes of the file. It is
+/// 1/sr, or others (MuellerElements), whose Stokes vectors have the axes of the file. It is
 /// isotropic and spectral.
 ///
 /// theta_h, theta_d and phi_d are Rusinkiewicz's angles, with wi towards the light and phi_d =
 /// 0 where wi leans away from the normal. f is linear in the angles between the nodes and
 /// constant beyond. Files with empty angles (shape 0 x n) are read as evenly spaced: theta from
-/// 0 to 90, phi_d from -180 to 180 degrees. Interpolation leaves out nodes whose M00 is NaN, or
-/// 0 as in cells below the horizon; without any of the eight nodes f is 0. Negative values of M00
-/// become 0. The degree of polarisation is that of the interpolated elements. Reciprocity does not
-/// hold in measured files.
+/// 0 to 90, phi_d from -180 to 180 degrees. Interpolation leaves out nodes that lack one of the
+/// elements that are read, or whose M00 is 0 as in cells below the horizon; without any of the
+/// eight nodes f is 0. Negative values of M00 become 0. The degree of polarisation is that of the
+/// interpolated elements. Reciprocity does not hold in measured files.
 class PbsdfBrdf : public MeasuredBrdf {
 public:
     /// `name` is the path of the file. Throws InputError naming field and offset.
-    PbsdfBrdf(std::span<const unsigned char> bytes, std::string name, MuellerElement element = {});
-    static std::unique_ptr<PbsdfBrdf> open(const std::string& path, MuellerElement element = {});
+    PbsdfBrdf(std::span<const unsigned char> bytes, std::string name,
+              MuellerElements elements = MuellerElements());
+    static std::unique_ptr<PbsdfBrdf> open(const std::string& path,
+                                           MuellerElements elements = MuellerElements());
 
     std::string name() const override { return name_; }
     const Channels& channels() const override { return channels_; }
@@ -48,15 +50,18 @@ private:
     Corners corners(const Direction& wo, const Direction& wi) const;
     std::size_t vertex(std::size_t p, std::size_t d, std::size_t h) const;
     bool hasValue(std::size_t vertex) const;
-    double nodeValue(std::size_t vertex, std::size_t channel) const;
-    /// The places of `element_`, after M00 where that is not among them.
+    /// The sum of the matrices at some nodes, by weight.
+    MuellerElements::Matrix matrixAt(const Corners& corners, std::size_t wavelength) const;
+    void addNode(std::size_t vertex, Census& census) const;
+    /// The places of `elements_`, after M00 where that is not among them.
     std::size_t planes() const { return places_.size(); }
-    const float* at(std::size_t vertex, std::size_t channel) const {
-        return values_.data() + (vertex * channels_.count() + channel) * planes();
+    std::size_t wavelengths() const { return channels_.wavelengths.size(); }
+    const float* at(std::size_t vertex, std::size_t wavelength) const {
+        return values_.data() + (vertex * wavelengths() + wavelength) * planes();
     }
 
     std::string name_;
-    MuellerElement element_;
+    MuellerElements elements_;
     std::vector<std::size_t> places_;
     Channels channels_;
     Laws laws_;

@@ -24,6 +24,8 @@
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/wording.h>
 
+#include <brdfs/measured/mueller.h>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -350,6 +352,7 @@ Exported exportCoefficients(const std::string& path, const std::string& folder,
     }
     requireCoefficients(path);
     const Representation stored = readRepresentation(path);
+    brdfs::requireReflectance(path, stored.head.channels, "export");
     const Targets chosen = targetsFor(stored, options, listener);
     const std::vector<LightSpecification> lights = lightsOf(chosen, options);
     Exported exported;

@@ -1,6 +1,5 @@
 #include "picture.h"
 
-#include <hshfit/brdf/transmission.h>
 #include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 
@@ -17,7 +16,8 @@ bool hasOneDirection(const Brdf& brdf) {
 }
 
 std::optional<PictureError> pictureErrorOf(const Brdf& f, const Brdf& g) {
-    if (hasOneDirection(f) || hasOneDirection(g) || transmits(f)) return std::nullopt;
+    if (hasOneDirection(f) || hasOneDirection(g)) return std::nullopt;
+    if (f.channels().kind == Channels::Kind::named) return std::nullopt;
     return pictureError(f, g);
 }
 

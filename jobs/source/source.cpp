@@ -19,6 +19,7 @@
 
 #include <brdfs/catalog.h>
 #include <brdfs/measured/measured_brdf.h>
+#include <brdfs/measured/mueller.h>
 
 #include <fmt/format.h>
 
@@ -70,6 +71,7 @@ std::unique_ptr<Brdf> openTexel(const std::string& spec) {
 
 std::unique_ptr<Brdf> checked(std::unique_ptr<Brdf> brdf, Sides sides) {
     if (sides == Sides::reflection) requireReflection(*brdf, "this command");
+    if (sides != Sides::eitherAndNamed) brdfs::requireReflectance(*brdf, "this command");
     return brdf;
 }
 
@@ -82,7 +84,7 @@ std::unique_ptr<Brdf> openAnySource(const std::string& spec, bool rgb) {
         auto coefficients = gpu::unpack(gpu::readPayload(spec).payload);
         return seenAsRgb(std::make_unique<Reconstruction>(std::move(coefficients)), rgb);
     }
-    if (!looksLikeCoefficients(spec)) return openBrdf(spec, rgb, Sides::either);
+    if (!looksLikeCoefficients(spec)) return openBrdf(spec, rgb, Sides::eitherAndNamed);
     Representation representation = readRepresentation(spec);
     const bool plain = representation.steps.empty() && representation.added.empty() &&
                        representation.as<CoefficientArray>();

@@ -10,13 +10,14 @@
 namespace hshfit::jobs {
 
 /// The kinds of scattering that a job takes. Transmissions have laws of their own
-/// (hshfit/brdf/transmission.h), so that a job has to ask for them.
-enum class Sides { reflection, either };
+/// (hshfit/brdf/transmission.h), and channels that are no reflectance, such as elements of Mueller
+/// matrices, have none, so that a job has to ask for them.
+enum class Sides { reflection, either, eitherAndNamed };
 
 /// Opens a BRDF specification (docs/reference/brdfs.md) or a texel of a material map
-/// (FILE:x=3,y=5,level=0). `rgb` converts a spectral BRDF to linear Rec.
-/// 709 and leaves others unchanged. Throws UsageError for a transmission unless `sides` is
-/// `either`.
+/// (FILE:x=3,y=5,level=0). `rgb` converts a spectral BRDF to linear Rec. 709 and leaves others
+/// unchanged. Throws UsageError for a transmission, and InputError for channels that are no
+/// reflectance, unless `sides` says otherwise.
 std::unique_ptr<Brdf> openBrdf(const std::string& spec, bool rgb = false,
                                Sides sides = Sides::reflection);
 

@@ -3,6 +3,7 @@
 #include <jobs/source/picture.h>
 #include <jobs/source/source.h>
 
+#include <brdfs/measured/mueller.h>
 #include <brdfs/measured/scattered/scattered.h>
 #include <hshfit/brdf/transmission.h>
 #include <hshfit/coefficients/reconstruction.h>
@@ -42,6 +43,7 @@ OutgoingSet outgoingOf(const CompareOptions& options, const Brdf& a, const Brdf&
 void writeFiles(const Brdf& a, const Brdf& b, const std::string& folder,
                 const CompareOptions& options, const Listener& listener, Compared& compared) {
     requireReflection(a, "a page with its lit spheres");
+    brdfs::requireReflectance(a, "a page with its lit spheres");
     const auto filesIn = [](const std::string& name) {
         return name.empty() ? nullptr
                             : std::make_unique<FileSet>(name, true, FileSet::Above::require);
@@ -140,6 +142,8 @@ Compared compareNamed(const Brdf& a, const Brdf& b, const std::array<std::string
         a, b, result.outgoing, metrics,
         {.reference = names[0], .approximation = names[1], .progress = listener.part("compare")});
     result.picture = pictureErrorOf(a, b);
+    if (a.channels().reflectances() < a.channels().count())
+        result.undrawn = a.channels().names()[a.channels().reflectances()];
     result.pairs = overPairs(a, b);
     result.samples = atSamples(a, b, metrics);
     const auto hasValue = [](const MetricValue& metric) { return metric.value.has_value(); };
@@ -155,8 +159,8 @@ Compared compare(const std::string& a, const std::string& b, const std::string& 
                  const CompareOptions& options, const Listener& listener) {
     selectMetrics(options.metrics);  // a word that is none fails before any file is opened
     if (options.figures) checkFigures(*options.figures);
-    const auto reference = openSource(a, options.rgb, Sides::either),
-               approximation = openSource(b, options.rgb, Sides::either);
+    const auto reference = openSource(a, options.rgb, Sides::eitherAndNamed),
+               approximation = openSource(b, options.rgb, Sides::eitherAndNamed);
     return compareNamed(*reference, *approximation,
                         {messageName(a, *reference), messageName(b, *approximation)}, output,
                         options, listener);

@@ -43,7 +43,8 @@ struct Compared {
     /// beyond which it is 0.
     std::optional<AtSamples> samples = {};
     std::optional<PictureError> picture = {};  ///< pictureErrorOf
-    std::vector<std::string> files = {};       ///< of the page, where one was asked for
+    std::string undrawn = {};             ///< a channel that is no reflectance, if there is one
+    std::vector<std::string> files = {};  ///< of the page, where one was asked for
     FigureFiles figures = {};
 };
 

@@ -13,6 +13,7 @@
 #include <hshfit/wording.h>
 
 #include <brdfs/catalog.h>
+#include <brdfs/measured/mueller.h>
 #include <brdfs/rows/spec.h>
 
 #include <fmt/format.h>
@@ -234,6 +235,7 @@ Converted convertBrdf(const Brdf& brdf, const std::string& output, const Convert
         throw UsageError(fmt::format("{} and {} are for a specification, not for a BRDF at hand",
                                      Setting{"ConvertOptions::repairs"},
                                      Setting{"ConvertOptions::rgb"}));
+    brdfs::requireReflectance(brdf, "convert");
     return converted(brdf, nullptr, output, checkedWriter(options, output), options, listener);
 }
 

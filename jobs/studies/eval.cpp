@@ -62,8 +62,9 @@ void remark(const Brdf& brdf, const Listener& listener) {
 }
 
 std::vector<std::string> columnsOf(const Channels& channels) {
-    if (channels.kind == Channels::Kind::spectral) return channels.names();
-    return {"r", "g", "b"};
+    const bool colours =
+        channels.kind == Channels::Kind::grey || channels.kind == Channels::Kind::rgb;
+    return colours ? std::vector<std::string>{"r", "g", "b"} : channels.names();
 }
 
 Evaluated factsOf(const Brdf& brdf) {
@@ -173,7 +174,7 @@ void evaluateArrays(const Brdf& brdf, const VectorArray& wi, const VectorArray& 
 
 Evaluated evaluatePair(const std::string& source, const Direction& wi, const Direction& wo,
                        const EvalOptions& options, const Listener& listener) {
-    const auto brdf = openSource(source, options.rgb, Sides::either);
+    const auto brdf = openSource(source, options.rgb, Sides::eitherAndNamed);
     Evaluated result = factsOf(*brdf);
     const Direction leaving = outgoingFor(!result.side.empty(), wo, [&] {
         return fmt::format("{}: wo = {:.4g},{:.4g} degrees", source, degrees(polarAngle(wo)),
@@ -189,7 +190,7 @@ Evaluated evaluatePair(const std::string& source, const Direction& wi, const Dir
 EvaluatedPairs evaluatePairs(const std::string& source, const std::string& pairs,
                              const std::string& output, const EvalOptions& options,
                              const Listener& listener) {
-    const auto brdf = openSource(source, options.rgb, Sides::either);
+    const auto brdf = openSource(source, options.rgb, Sides::eitherAndNamed);
     const bool through = transmits(*brdf);
     EvaluatedPairs result{.facts = factsOf(*brdf), .csv = {}};
     const auto columns = columnsOf(brdf->channels());

@@ -3,6 +3,7 @@
 #include <jobs/source/source.h>
 
 #include <hshfit/accuracy/isotropy.h>
+#include <hshfit/brdf/channel_view.h>
 #include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/gpu/forms/form_files.h>
 #include <hshfit/quadrature/quadrature.h>
@@ -65,10 +66,31 @@ std::string likenessOf(const Brdf& brdf) {
     return {};
 }
 
-void warn(BrdfInfo& info, const std::string& likeness) {
+/// The first channels of a BRDF, which are a reflectance: laws of energy and of signs, symmetry and
+/// repair are about them alone. All of them: the BRDF itself.
+std::shared_ptr<const Brdf> reflectanceOf(const Brdf& brdf) {
+    const std::shared_ptr<const Brdf> whole(&brdf, [](const Brdf*) {});
+    const Channels& channels = brdf.channels();
+    const std::size_t first = channels.reflectances();
+    if (first == channels.count()) return whole;
+    if (first == 0) return nullptr;
+    ChannelView::Look look{
+        .name = brdf.name(),
+        .channels = Channels::named({channels.quantities.front()}, channels.wavelengths),
+        .laws = brdf.laws(),
+        .weights = {}};
+    for (std::size_t c = 0; c < first; ++c) {
+        look.weights.emplace_back(channels.count(), 0.0);
+        look.weights.back()[c] = 1;
+    }
+    return std::make_shared<ChannelView>(whole, std::move(look));
+}
+
+void warn(BrdfInfo& info, const Brdf* reflectance, const std::string& likeness) {
     if (!likeness.empty()) info.warnings.push_back("the file looks like " + likeness);
     constexpr double alike = 0.01;  // the files of real materials stay below 0.001
-    const double variation = info.brdf->laws().isotropic ? azimuthVariation(*info.brdf) : 0;
+    const bool isotropic = reflectance && reflectance->laws().isotropic;
+    const double variation = isotropic ? azimuthVariation(*reflectance) : 0;
     if (variation > alike)
         info.warnings.push_back(
             fmt::format("it is taken as isotropic, but at normal incidence f varies with the "
@@ -79,7 +101,10 @@ void warn(BrdfInfo& info, const std::string& likeness) {
 Health healthOf(const Brdf& brdf, const Listener& listener) {
     HealthOptions options{.progress = listener.part("info")};
     // A search among samples takes some twenty times as long as a look into a table.
-    if (dynamic_cast<const brdfs::Scattered*>(&brdf) == nullptr) options.albedoEvaluations *= 4;
+    const auto* view = dynamic_cast<const ChannelView*>(&brdf);
+    const bool searched =
+        dynamic_cast<const brdfs::Scattered*>(view ? &view->seen() : &brdf) != nullptr;
+    if (!searched) options.albedoEvaluations *= 4;
     options.albedoEvaluations /= costOf(brdf);
     return examine(brdf, options);
 }
@@ -87,7 +112,7 @@ Health healthOf(const Brdf& brdf, const Listener& listener) {
 }  // namespace
 
 BrdfInfo describeSource(const std::string& source, bool rgb, const Listener& listener) {
-    BrdfInfo info{.brdf = openSource(source, rgb, Sides::either)};
+    BrdfInfo info{.brdf = openSource(source, rgb, Sides::eitherAndNamed)};
     const Brdf& brdf = *info.brdf;
     if (const auto* plain = dynamic_cast<const Reconstruction*>(&brdf))
         info.coefficients = &plain->coefficients();
@@ -95,21 +120,23 @@ BrdfInfo describeSource(const std::string& source, bool rgb, const Listener& lis
         info.representation = &represented->representation();
         info.coefficients = &info.representation->head;
     }
-    info.health = healthOf(brdf, listener);
+    const std::shared_ptr<const Brdf> reflectance = reflectanceOf(brdf);
+    if (reflectance) info.health = healthOf(*reflectance, listener);
     if (const auto* measured = dynamic_cast<const brdfs::MeasuredBrdf*>(&brdf)) {
         info.census = measured->census();
         info.axes = measured->axes();
-        info.bothOrders = measured->bothOrders();
+        if (reflectance.get() == &brdf) info.bothOrders = measured->bothOrders();
         if (std::string why = whyZero(brdf); !why.empty()) info.warnings.push_back(std::move(why));
     }
     const std::string likeness = likenessOf(brdf);
     // A picture of light is not to be repaired into a BRDF.
     for (const brdfs::Repair& repair : brdfs::repairs()) {
-        std::string reason = likeness.empty() ? repair.reason(brdf, info.health) : "";
+        if (reflectance.get() != &brdf) break;  // elements of matrices are not repaired
+        std::string reason = likeness.empty() ? repair.reason(brdf, *info.health) : "";
         if (!reason.empty()) info.repairs.push_back({repair.name, std::move(reason)});
     }
     findRange(info);
-    warn(info, likeness);
+    warn(info, reflectance.get(), likeness);
     info.exportedForm = gpu::readIfForm(source, sourceOpener());
     if (!info.exportedForm && gpu::looksLikePayload(source))
         info.exported = gpu::readPayload(source);

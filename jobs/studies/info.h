@@ -36,7 +36,7 @@ struct BrdfInfo {
     std::optional<brdfs::Census> census = {};            ///< these three of a measured BRDF
     std::vector<brdfs::Axis> axes = {};
     std::optional<brdfs::BothOrders> bothOrders = {};
-    Health health = {};
+    std::optional<Health> health = {};  ///< of the channels that are a reflectance, if any are
     std::vector<SuggestedRepair> repairs = {};
     /// f over 12 outgoing directions and the grid that quadrature would use.
     double least = std::numeric_limits<double>::infinity(), greatest = -least;

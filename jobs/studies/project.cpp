@@ -17,6 +17,7 @@
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/wording.h>
 
+#include <brdfs/measured/mueller.h>
 #include <brdfs/measured/scattered/scattered.h>
 
 #include <fmt/format.h>
@@ -98,7 +99,8 @@ public:
                   const ProgressCall& progress) const {
         Projected result;
         withFileNamed(spec, [&] {
-            result = projected(*openBrdf(spec, options_.rgb, Sides::either), output, progress);
+            result =
+                projected(*openBrdf(spec, options_.rgb, Sides::eitherAndNamed), output, progress);
         });
         return result;
     }
@@ -124,6 +126,7 @@ public:
                             "{}",
                             brdf.name(), Setting{"Form::reciprocal"}));
         if (form_) {
+            brdfs::requireReflectance(brdf, "a form of coefficients");
             result.kept = represent(brdf, *form_, sourceOpener(), how);
             result.projection.coefficients = {result.kept->head};
             const auto again = reconstruct(*result.kept, sourceOpener());

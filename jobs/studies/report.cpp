@@ -101,15 +101,15 @@ Reported report(const std::vector<std::string>& specs, const ReportOptions& opti
     std::vector<ReportEntry>& found = result.report.reports;
     if (!areMany(specs)) {
         const std::string& spec = result.specs.front();
-        found.push_back(entryOf(*openBrdf(spec, options.rgb, Sides::either), pointers, options,
-                                listener.part(spec)));
+        found.push_back(entryOf(*openBrdf(spec, options.rgb, Sides::eitherAndNamed), pointers,
+                                options, listener.part(spec)));
         return result;
     }
     std::vector<std::optional<ReportEntry>> entries(result.specs.size());
     result.failures = forEachInput(
         result.specs, listener, "report", [&](std::size_t i, const ProgressCall& progress) {
-            entries[i] = entryOf(*openBrdf(result.specs[i], options.rgb, Sides::either), pointers,
-                                 options, progress);
+            entries[i] = entryOf(*openBrdf(result.specs[i], options.rgb, Sides::eitherAndNamed),
+                                 pointers, options, progress);
         });
     for (auto& entry : entries)
         if (entry) found.push_back(std::move(*entry));

@@ -220,6 +220,12 @@ TEST(CovarianceFile, NamesBlockAndRowOfAMistake) {
     expectRefused("{", {});
     EXPECT_THROW(parseSigma("1%,covariance="), UsageError);
     EXPECT_THROW(parseSigma(",covariance=x.json"), UsageError);
+    try {
+        parseSigma("1%,covarance=x.json");
+        ADD_FAILURE() << "a misspelt key was taken";
+    } catch (const UsageError& error) {
+        EXPECT_NE(std::string(error.what()).find("',covariance=FILE'"), std::string::npos);
+    }
 }
 
 TEST(CovarianceFile, HasToMatchTheData) {

@@ -19,8 +19,8 @@ void check(const hshfit::brdfs::PbsdfBrdf& brdf) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    for (const char* element : {"m00", "m12", "dolp"}) try {
-            check({{data, size}, "input", hshfit::brdfs::MuellerElement(element)});
+    for (const char* element : {"m00", "m12", "dolp", "all"}) try {
+            check({{data, size}, "input", hshfit::brdfs::MuellerElements(element)});
         } catch (const hshfit::InputError&) {
         }
     return 0;

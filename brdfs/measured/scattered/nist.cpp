@@ -24,7 +24,7 @@ struct Reading {
     Geometry at;
     std::size_t line = 0;
     struct Value {
-        double f = 0;
+        std::vector<double> f;  ///< one for each of the quantities
         std::size_t line = 0;
     };
     std::map<double, Value> values;  ///< by wavelength in nm
@@ -34,18 +34,21 @@ bool looksLikeNist(std::span<const unsigned char> head, std::uint64_t) {
     return asText(head).starts_with(beginning);
 }
 
-/// The element of a row, whose matrix begins at its sixth number and has f_r11 in place of m_11.
-double valueOf(const std::vector<double>& row, const MuellerElement& element) {
-    if (element.isReflectance()) return row[5];
+/// The elements of a row, whose matrix begins at its sixth number and has f_r11 in place of m_11.
+std::vector<double> valuesOf(const std::vector<double>& row, const MuellerElements& elements) {
+    if (elements.isReflectance()) return {row[5]};  // also below 0, to be counted
+    MuellerElements::Matrix matrix{row[5]};
+    for (std::size_t place = 1; place < matrix.size(); ++place)
+        matrix[place] = row[5] * row[5 + place];
     std::vector<double> values;
-    for (const std::size_t place : element.places())
-        values.push_back(place == 0 ? row[5] : row[5] * row[5 + place]);
-    return element.value(values.data());
+    for (std::size_t k = 0; k < elements.size(); ++k) values.push_back(elements.value(k, matrix));
+    return values;
 }
 
 /// Checks the angles and appends the row to the readings of its geometry.
-void addRow(const std::vector<double>& row, const MuellerElement& element, const TextReader& reader,
-            std::map<Geometry, std::size_t>& known, std::vector<Reading>& readings) {
+void addRow(const std::vector<double>& row, const MuellerElements& elements,
+            const TextReader& reader, std::map<Geometry, std::size_t>& known,
+            std::vector<Reading>& readings) {
     constexpr std::array<std::string_view, 5> names = {"lambda", "thetai", "phii", "thetar",
                                                        "phir"};
     constexpr std::array<double, 5> most = {1000, 90, 720, 90, 720};
@@ -62,7 +65,7 @@ void addRow(const std::vector<double>& row, const MuellerElement& element, const
     const auto [place, isNew] = known.try_emplace(at, readings.size());
     if (isNew) readings.push_back({at, reader.lineNumber(), {}});
     if (!readings[place->second]
-             .values.try_emplace(nm, Reading::Value{valueOf(row, element), reader.lineNumber()})
+             .values.try_emplace(nm, Reading::Value{valuesOf(row, elements), reader.lineNumber()})
              .second) {
         throw reader.error(fmt::format("a second row for these angles at {} nm", nm));
     }
@@ -70,7 +73,7 @@ void addRow(const std::vector<double>& row, const MuellerElement& element, const
 
 }  // namespace
 
-Samples readNist(std::string_view text, const std::string& where, const MuellerElement& element) {
+Samples readNist(std::string_view text, const std::string& where, const MuellerElements& elements) {
     TextReader reader(text, where);
     if (!reader.next() || !reader.line().starts_with(beginning)) {
         throw reader.error(fmt::format("expected the names of the columns, '{},...'", beginning));
@@ -85,16 +88,16 @@ Samples readNist(std::string_view text, const std::string& where, const MuellerE
         if (row.size() != columnCount) {
             throw reader.error(fmt::format("{} numbers, expected {}", row.size(), columnCount));
         }
-        addRow(row, element, reader, known, readings);
+        addRow(row, elements, reader, known, readings);
         ++wavelengths[std::round(row[0] * 1e6) / 1e3];
     }
     Samples samples;
     std::vector<double> nanometres;
     for (const auto& [nm, count] : wavelengths) nanometres.push_back(nm);
     if (nanometres.empty()) throw reader.error("the file has no rows");
-    samples.channels = Channels::spectral(nanometres);
-    samples.element = element;
-    samples.facts = {{"format", "nist"}, muellerFact(element)};
+    samples.channels = elements.channels(Channels::spectral(nanometres));
+    samples.elements = elements;
+    samples.facts = {{"format", "nist"}, muellerFact(elements)};
     std::size_t incomplete = 0;
     std::vector<double> values;
     for (const Reading& reading : readings) {
@@ -103,15 +106,17 @@ Samples readNist(std::string_view text, const std::string& where, const MuellerE
             continue;
         }
         values.clear();
-        for (const auto& [nm, value] : reading.values) values.push_back(value.f);
+        for (std::size_t k = 0; k < elements.size(); ++k)
+            for (const auto& [nm, value] : reading.values) values.push_back(value.f[k]);
         const std::size_t before = samples.size();
         const Geometry& at = reading.at;
         samples.add(directionFromAngles(radians(at[0]), radians(at[1])),
                     directionFromAngles(radians(at[2]), radians(at[3])), values,
                     {where, "line", reading.line});
         auto line = samples.rows.begin() + static_cast<std::ptrdiff_t>(before * values.size());
-        for (const auto& [nm, value] : reading.values)
-            if (line != samples.rows.end()) *line++ = value.line;
+        for (std::size_t k = 0; k < elements.size(); ++k)
+            for (const auto& [nm, value] : reading.values)
+                if (line != samples.rows.end()) *line++ = value.line;
     }
     if (incomplete > 0) {
         samples.leftOut.push_back(
@@ -131,7 +136,7 @@ const Format& nistFormat() {
             [](const std::string& path, const Parameters& parameters) {
                 return openScattered(path, parameters,
                                      [&](std::string_view text, const std::string& where) {
-                                         return readNist(text, where, muellerElement(parameters));
+                                         return readNist(text, where, muellerElements(parameters));
                                      });
             },
     };

@@ -35,7 +35,7 @@ struct Samples {
     /// The value of the option `side` (sides.h); empty for formats of reflections alone.
     std::string_view side = {};
     /// Values of others than M_00 are below 0 too, and neither exchange nor mirror holds for them.
-    MuellerElement element;
+    MuellerElements elements;
     Census census;
     std::vector<Fact> facts;           ///< the format and the facts of its header
     std::vector<std::string> leftOut;  ///< parts of the file that are not read

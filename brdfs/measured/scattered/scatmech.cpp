@@ -180,7 +180,7 @@ void ZernikeExpansion::eval(const Direction& wo, DirectionBatch wi, double* out)
 std::vector<Fact> ZernikeExpansion::facts() const {
     std::vector<Fact> facts{{"format", "scatmech"}, {"terms", static_cast<std::int64_t>(terms_)}};
     if (otherTerms_ > 0) {
-        facts.push_back(muellerFact({}));
+        facts.push_back(muellerFact(MuellerElements()));
         facts.emplace_back("not_read",
                            fmt::format("{} terms of Mueller elements other than 11", otherTerms_));
     }
@@ -208,7 +208,7 @@ std::unique_ptr<Brdf> readScatmech(std::string_view text, const std::string& whe
         }
         if (at[0] == 1 && at[1] == 1) {
             terms.push_back(termOf(at, options.scale * row[7], reader));
-        } else if (options.element.isReflectance()) {
+        } else if (options.elements.isReflectance()) {
             ++others;
             continue;
         } else {
@@ -224,9 +224,9 @@ std::unique_ptr<Brdf> readScatmech(std::string_view text, const std::string& whe
         wavelengths = {351, 532, 633, 1064};
     }
     ZernikeExpansion reflectance(terms, wavelengths, name, others);
-    if (options.element.isReflectance())
+    if (options.elements.isReflectance())
         return std::make_unique<ZernikeExpansion>(std::move(reflectance));
-    return std::make_unique<ZernikeMueller>(std::move(reflectance), rows, options.element,
+    return std::make_unique<ZernikeMueller>(std::move(reflectance), rows, options.elements,
                                             std::move(name));
 }
 
@@ -258,7 +258,7 @@ const Format& scatmechFormat() {
                 brdf = readScatmech(text, where, options.empty() ? path : path + ":" + options,
                                     {.wavelength = parameters.number("wavelength"),
                                      .scale = parameters.number("scale"),
-                                     .element = muellerElement(parameters)});
+                                     .elements = muellerElements(parameters)});
             });
             return brdf;
         },

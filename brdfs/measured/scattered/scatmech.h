@@ -57,11 +57,11 @@ private:
 
 struct ScatmechOptions {
     double wavelength = 0, scale = 1;
-    MuellerElement element = {};
+    MuellerElements elements = MuellerElements();
 };
 
 /// Reads a SCATMECH coefficient table, rows i, j, n, m, k, l, p, a between commas or blanks. Rows
-/// of other Mueller elements than the one asked for are checked and left out. `wavelength` in nm;
+/// of other Mueller elements than those asked for are checked and left out. `wavelength` in nm;
 /// 0: grey where no row depends on it, else 351, 532, 633 and 1064 nm, at which PTFE was measured.
 /// Every a is multiplied by `scale`. Throws InputError, with `where` and the line, for any other
 /// content.

@@ -31,27 +31,31 @@ public:
         double a = 0;
     };
 
-    /// Throws InputError, starting with `name`, where no row is of the element.
+    /// Throws InputError, starting with `name`, where no row is of one of the elements.
     ZernikeMueller(ZernikeExpansion reflectance, const std::vector<Row>& rows,
-                   MuellerElement element, std::string name);
+                   MuellerElements elements, std::string name);
 
     std::string name() const override { return name_; }
-    const Channels& channels() const override { return reflectance_.channels(); }
+    const Channels& channels() const override { return channels_; }
     const Laws& laws() const override { return laws_; }
     void eval(const Direction& wo, DirectionBatch wi, double* out) const override;
     std::vector<Fact> facts() const override;
 
 private:
-    struct Product {  ///< K of a mode at wi times K of one at wo
+    struct Product {  ///< K of a mode at wi times K of one at wo, for a place in the matrix
         std::size_t place = 0, first = 0, second = 0;
-        std::vector<double> weights;  ///< per channel
+        std::vector<double> weights;  ///< per wavelength
     };
     std::size_t mode(int n, int k);
     void addRow(const Row& row, std::size_t place);
+    /// The elements over f_11, by wavelength.
+    void ratios(const Direction& wo, const Direction& wi,
+                std::vector<MuellerElements::Matrix>& out) const;
     void modes(const Direction& d, double phi, double* out) const;
 
     ZernikeExpansion reflectance_;
-    MuellerElement element_;
+    MuellerElements elements_;
+    Channels channels_;
     std::string name_;
     Laws laws_;
     std::vector<std::pair<int, int>> modes_;  ///< (n, k) in use

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace hshfit::brdfs {
@@ -155,8 +154,8 @@ Scattered::Scattered(Samples samples, const ScatteredOptions& options, std::stri
                                      samples_.census.belowHorizon / samples_.channels.count()));
     }
     if (options_.scale != 1) samples_.scale(options_.scale);
-    const bool reflectance = samples_.element.isReflectance();
-    const bool positive = reflectance || samples_.element.isDegree();
+    const MuellerElements& elements = samples_.elements;
+    const bool reflectance = elements.isReflectance(), positive = elements.arePositive();
     chart_ = chartOf(samples_, options_);
     const bool ofPairs = chart_ == Chart::isotropic || chart_ == Chart::anisotropic;
     folding_.exchange = options_.exchange && ofPairs && reflectance;
@@ -164,7 +163,6 @@ Scattered::Scattered(Samples samples, const ScatteredOptions& options, std::stri
                       options_.mirror.value_or(chart_ == Chart::isotropic && oneSided(samples_));
     laws_ = lawsOf(chart_, folding_);
     laws_.nonNegative = positive;
-    const double least = positive ? 0 : -std::numeric_limits<double>::infinity();
     images_ = images(chart_, folding_);
     std::vector<Point> points;
     std::vector<double> values;
@@ -182,7 +180,9 @@ Scattered::Scattered(Samples samples, const ScatteredOptions& options, std::stri
             for (std::size_t c = 0; c < image.size(); ++c) image[c] = at[c] * signs[c];
             points.push_back(image);
             for (std::size_t c = 0; c < channels; ++c) {
-                values.push_back(std::max(least, samples_.values[k * channels + c]));
+                const double value = samples_.values[k * channels + c];
+                const bool clamped = elements.isPositive(c * elements.size() / channels);
+                values.push_back(clamped ? std::max(0.0, value) : value);
             }
         }
     }

@@ -129,8 +129,7 @@ class PairEvaluator {
 public:
     PairEvaluator(const Brdf& f, const Brdf& g) : f_(f), g_(g) {
         const Channels &a = f.channels(), &b = g.channels();
-        const bool grey = a.kind == Channels::Kind::grey || b.kind == Channels::Kind::grey;
-        if (!grey && (a.kind != b.kind || a.wavelengths != b.wavelengths)) {
+        if (!a.serve(b) && !b.serve(a)) {
             throw UsageError(fmt::format("{} has channels {}, {} has {}: they cannot be compared",
                                          f.name(), fmt::join(a.names(), " "), g.name(),
                                          fmt::join(b.names(), " ")));

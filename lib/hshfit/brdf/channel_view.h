@@ -28,7 +28,7 @@ public:
         std::vector<std::vector<double>> weights;  ///< [channel][channel of the BRDF]
         std::vector<Fact> facts = {};              ///< beside those of the BRDF
     };
-    ChannelView(std::unique_ptr<Brdf> seen, Look look)
+    ChannelView(std::shared_ptr<const Brdf> seen, Look look)
         : seen_(std::move(seen)), look_(std::move(look)) {}
 
     const Brdf& seen() const { return *seen_; }
@@ -62,7 +62,7 @@ public:
     void checkIntact() const override { seen_->checkIntact(); }
 
 private:
-    std::unique_ptr<Brdf> seen_;
+    std::shared_ptr<const Brdf> seen_;
     Look look_;
 };
 

@@ -20,6 +20,9 @@ constexpr std::string_view plain = "grey:", weighted = "grey=";
 
 std::unique_ptr<Brdf> asGrey(std::unique_ptr<Brdf> brdf, std::vector<double> weights) {
     const std::size_t channels = brdf->channels().count();
+    if (brdf->channels().reflectances() != channels)
+        throw UsageError(fmt::format("{}: {} is no reflectance; grey means those that are",
+                                     brdf->name(), brdf->channels().names().back()));
     if (weights.empty()) weights.assign(channels, 1.0);
     const bool good = std::all_of(weights.begin(), weights.end(),
                                   [](double w) { return w >= 0 && std::isfinite(w); });

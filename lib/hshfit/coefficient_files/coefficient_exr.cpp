@@ -34,17 +34,14 @@ constexpr std::size_t maxChannels = 100'000;
 constexpr std::array<std::string_view, 5> stringKeys{"format", "generator", "quantity",
                                                      "channel_kind", "energy_reason"};
 
-/// The suffix of each colour channel in an EXR channel name: "Y"; "R", "G", "B"; "550,5nm"
+/// The suffix of each channel in an EXR channel name: "Y"; "R", "G", "B"; "550,5nm", "m01_550,5nm"
 /// (a decimal comma, because a point separates layers).
 std::vector<std::string> suffixes(const Channels& channels) {
     if (channels.kind == Channels::Kind::grey) return {"Y"};
     if (channels.kind == Channels::Kind::rgb) return {"R", "G", "B"};
-    std::vector<std::string> result;
-    for (const double nanometres : channels.wavelengths) {
-        result.push_back(fmt::format("{}nm", nanometres));
-        std::replace(result.back().begin(), result.back().end(), '.', ',');
-    }
-    return result;
+    std::vector<std::string> names = channels.names();
+    for (std::string& name : names) std::replace(name.begin(), name.end(), '.', ',');
+    return names;
 }
 
 /// [channel * slots + slot]: "c007.R", with the digits that the last slot needs, at least three.

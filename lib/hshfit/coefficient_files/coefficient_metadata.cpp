@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -59,6 +61,8 @@ const char* kindName(Channels::Kind kind) {
             return "grey";
         case Channels::Kind::rgb:
             return "rgb";
+        case Channels::Kind::named:
+            return "named";
         case Channels::Kind::spectral:
             break;
     }
@@ -67,20 +71,43 @@ const char* kindName(Channels::Kind kind) {
 
 using Fields = JsonFields;
 
+std::vector<double> readWavelengths(const Fields& root) {
+    std::vector<double> nm = root.numbers("wavelengths_nm");
+    if (nm.empty() || nm.front() <= 0 ||
+        !std::is_sorted(nm.begin(), nm.end(), std::less_equal<>())) {
+        root.fail("has to hold positive wavelengths in ascending order", "wavelengths_nm");
+    }
+    return nm;
+}
+
+/// Letters and digits alone, as the names become those of channels of pictures.
+std::vector<std::string> readQuantities(const Fields& root) {
+    std::vector<std::string> quantities = root.words("quantities");
+    const auto isName = [](const std::string& word) {
+        constexpr std::string_view allowed = "abcdefghijklmnopqrstuvwxyz0123456789";
+        return !word.empty() && word.size() <= 32 &&
+               word.find_first_not_of(allowed) == std::string::npos;
+    };
+    const std::set<std::string> different(quantities.begin(), quantities.end());
+    if (quantities.empty() || different.size() < quantities.size() ||
+        !std::all_of(quantities.begin(), quantities.end(), isName))
+        root.fail("has to hold different names of small letters and digits", "quantities");
+    return quantities;
+}
+
 Channels readChannels(const Fields& root) {
     const std::string kind = root.word("channel_kind");
     Channels channels;
     if (kind == "rgb") {
         channels = Channels::rgb();
     } else if (kind == "spectral") {
-        channels = Channels::spectral(root.numbers("wavelengths_nm"));
-        const auto& nm = channels.wavelengths;
-        if (nm.empty() || nm.front() <= 0 ||
-            !std::is_sorted(nm.begin(), nm.end(), std::less_equal<>())) {
-            root.fail("has to hold positive wavelengths in ascending order", "wavelengths_nm");
-        }
+        channels = Channels::spectral(readWavelengths(root));
+    } else if (kind == "named") {
+        channels = Channels::named(readQuantities(root), root.has("wavelengths_nm")
+                                                             ? readWavelengths(root)
+                                                             : std::vector<double>{});
     } else if (kind != "grey") {
-        root.fail("has to be 'grey', 'rgb' or 'spectral'", "channel_kind");
+        root.fail("has to be 'grey', 'rgb', 'spectral' or 'named'", "channel_kind");
     }
     const Json& names = root.at("channels");
     if (!names.is_array() || names.size() != channels.count()) {
@@ -226,9 +253,8 @@ CoefficientMetadata metadataOf(const CoefficientHead& c) {
     add("quantity", quantityName(c.quantity));
     add("channels", c.channels.names());
     add("channel_kind", kindName(c.channels.kind));
-    if (c.channels.kind == Channels::Kind::spectral) {
-        add("wavelengths_nm", c.channels.wavelengths);
-    }
+    if (!c.channels.quantities.empty()) add("quantities", c.channels.quantities);
+    if (!c.channels.wavelengths.empty()) add("wavelengths_nm", c.channels.wavelengths);
     add("outgoing", describe(c.outgoing));
     add("symmetry",
         {{"isotropic", c.isotropic}, {"bilateral", c.bilateral}, {"reciprocal", c.reciprocal}});

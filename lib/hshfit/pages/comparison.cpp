@@ -19,14 +19,10 @@ constexpr std::size_t mapEdge = 90;
 /// The channels of the comparison: a grey BRDF takes those of the other.
 Channels channelsOf(const Brdf& a, const Brdf& b) {
     const Channels &x = a.channels(), &y = b.channels();
-    if (x.kind == Channels::Kind::grey) return y;
-    if (y.kind == Channels::Kind::grey) return x;
-    if (x.kind != y.kind || x.wavelengths != y.wavelengths) {
-        throw UsageError(fmt::format("{} has channels {}, {} has {}: they cannot be compared",
-                                     a.name(), fmt::join(x.names(), " "), b.name(),
-                                     fmt::join(y.names(), " ")));
-    }
-    return x;
+    if (x.serve(y)) return y;
+    if (y.serve(x)) return x;
+    throw UsageError(fmt::format("{} has channels {}, {} has {}: they cannot be compared", a.name(),
+                                 fmt::join(x.names(), " "), b.name(), fmt::join(y.names(), " ")));
 }
 
 /// f at pairs of directions, all channels, one pair after the other.

@@ -35,6 +35,7 @@ std::vector<Ink> inksOf(const Comparison& comparison) {
         case Channels::Kind::rgb:
             return {red, green, blue};
         case Channels::Kind::spectral:
+        case Channels::Kind::named:
             break;
     }
     if (comparison.drawn.size() == 1) return {grey};

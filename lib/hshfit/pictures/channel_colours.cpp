@@ -18,6 +18,9 @@ ChannelColours::ChannelColours(const Channels& channels) {
             weights_ = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
             what_ = "linear Rec. 709";
             return;
+        case Channels::Kind::named:
+            throw UsageError(
+                fmt::format("{} is no reflectance and has no picture", channels.names().back()));
         case Channels::Kind::spectral:
             break;
     }

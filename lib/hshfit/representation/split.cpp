@@ -113,8 +113,7 @@ Remainder::Remainder(const Brdf& whole, std::unique_ptr<Brdf> added, bool nonNeg
       laws_(lawsOfRemainder(whole, added_.get(), nonNegative)) {
     if (!added_) return;
     const Channels &ours = whole.channels(), &theirs = added_->channels();
-    const bool same = theirs.kind == ours.kind && theirs.wavelengths == ours.wavelengths;
-    if (theirs.kind != Channels::Kind::grey && !same) {
+    if (!theirs.serve(ours)) {
         throw UsageError(fmt::format(
             "{} has other channels ({}) than {} ({})", Setting{"Form::split", added_->name()},
             fmt::join(theirs.names(), " "), whole.name(), fmt::join(ours.names(), " ")));
