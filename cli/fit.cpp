@@ -70,6 +70,9 @@ std::string text(const jobs::Fitted& fitted, const FitArguments& arguments) {
     }
     lines += instrumentText(result);
     if (fitted.search) lines += brdfs::textOf(*fitted.search);
+    for (const jobs::LossTrial& trial : fitted.losses)
+        lines += fmt::format("  {:<40} FLIP {:.3f}{}\n", "by the loss " + trial.loss, trial.flip,
+                             fitted.preset["fit"]["loss"] == trial.loss ? ", taken" : "");
     for (const auto& set : result.ambiguous)
         lines += fmt::format("  ambiguous together: {}\n", fmt::join(set, ", "));
     lines += fmt::format("  rms residual {:.6g} over {} values, {} iterations, {}\n", result.loss,
@@ -232,9 +235,10 @@ void addFit(CLI::App& command, Globals& globals) {
         "is valid is not fitted again");
     command.add_option("--model", options.model,
                        "MODEL[:key=value,...][+MODEL...]: what is given is not fitted");
-    command.add_option("--extensions", options.parts,
-                       "Of gltf-pbr and openpbr: auto (default) for the optional parts that "
-                       "held-out directions find worth it, none, all, or names with commas");
+    command.add_option(
+        "--extensions", options.parts,
+        "Of gltf-pbr and openpbr: auto (default) for the optional parts that "
+        "pixels or held-out directions find worth it, none, all, or names with commas");
     command.add_option("--compare-models", arguments->models,
                        "Fit each of these models and rank them by held-out directions");
     command.add_option("-o,--output", arguments->output,
