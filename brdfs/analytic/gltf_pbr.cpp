@@ -179,7 +179,7 @@ std::vector<Parameter> parameters() {
          .fallback = 1.5,
          .min = 1,
          .max = 100,
-         .fit = {{.low = 1.1, .high = 2.5}}},
+         .fit = {{.low = 1.2, .high = 2.2}}},
         unit("specularFactor", "strength of the dielectric's lobe", 1, {{.low = 0.1, .high = 0.9}}),
         // Not fitted: a colour here darkens the diffuse parts of all channels, as no column does.
         colour("specularColorFactor", "scale of the dielectric's F0", 1, {}),

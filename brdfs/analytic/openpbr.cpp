@@ -102,7 +102,7 @@ Parameter index(std::string_view name, std::string_view help, double fallback) {
             .fallback = fallback,
             .min = 1,
             .max = 3,
-            .fit = {{.low = 1.1, .high = 2.5}}};
+            .fit = {{.low = 1.2, .high = 2.2}}};
 }
 
 /// Multiple scattering and the coat's darkening are not linear in base_color.

@@ -128,8 +128,8 @@ private:
 /// "held out 0.0274, taken", the loss where it fell too little for that, or the failure.
 std::string outcomeOf(const PartTrial& trial) {
     if (!trial.failure.empty()) return trial.failure;
-    if (!trial.heldOut) return fmt::format("rms {:.6g}, not held out", trial.loss);
-    return fmt::format("held out {:.6g}{}", *trial.heldOut, trial.taken ? ", taken" : "");
+    return fmt::format("{} {:.6g}{}", trial.heldOut ? "held out" : "rms",
+                       trial.heldOut.value_or(trial.loss), trial.taken ? ", taken" : "");
 }
 
 std::string holding(const std::string& spec, const HeldParameter& held) {
@@ -137,27 +137,40 @@ std::string holding(const std::string& spec, const HeldParameter& held) {
                        held.value);
 }
 
-/// The parameters of the parts of a fit that may stay at their defaults, one after another.
-std::vector<HeldParameter> undecided(const Model& model, const FitSamples& samples, Trials& trials,
-                                     TriedParts current, double leastGain) {
-    std::vector<HeldParameter> held;
-    const double most = current.trial.loss / (1 - leastGain);
+/// The parameters of the parts of a fit, then those of the base but its colours, which are never
+/// left open.
+std::vector<std::string_view> heldInTurn(const Model& model,
+                                         const std::vector<std::string>& parts) {
+    std::vector<std::string_view> keys, ofParts;
     for (const ModelPart& part : model.parts) {
-        if (!has(current.trial.parts, part.name)) continue;
-        for (const std::string_view key : part.parameters) {
-            const Parameters stated = statedIn(current.options.model, model);
-            if (stated.given(key) ||
-                !isFree(model, {part.name, part.help, {key}}, stated, samples.isotropic))
-                continue;
-            const auto row = std::ranges::find(model.parameters, key, &Parameter::name);
-            HeldParameter own{std::string(key), *row->fallback};
-            TriedParts without =
-                trials.fitted(current.trial.parts, holding(current.options.model, own), &current);
-            if (!without.trial.failure.empty() || without.trial.loss > most) continue;
-            own.loss = without.trial.loss;
-            held.push_back(std::move(own));
-            current = std::move(without);
-        }
+        ofParts.insert(ofParts.end(), part.parameters.begin(), part.parameters.end());
+        if (has(parts, part.name))
+            keys.insert(keys.end(), part.parameters.begin(), part.parameters.end());
+    }
+    for (const Parameter& parameter : model.parameters)
+        if (parameter.kind == Parameter::Kind::number &&
+            std::ranges::find(ofParts, parameter.name) == ofParts.end())
+            keys.push_back(parameter.name);
+    return keys;
+}
+
+/// The parameters of a fit that may stay at their defaults, one after another, with a loss of
+/// `most`.
+std::vector<HeldParameter> undecided(const Model& model, const FitSamples& samples, Trials& trials,
+                                     TriedParts current, double most) {
+    std::vector<HeldParameter> held;
+    for (const std::string_view key : heldInTurn(model, current.trial.parts)) {
+        const Parameters stated = statedIn(current.options.model, model);
+        if (stated.given(key) || !isFree(model, {key, {}, {key}}, stated, samples.isotropic))
+            continue;
+        const auto row = std::ranges::find(model.parameters, key, &Parameter::name);
+        HeldParameter own{std::string(key), *row->fallback};
+        TriedParts without =
+            trials.fitted(current.trial.parts, holding(current.options.model, own), &current);
+        if (!without.trial.failure.empty() || without.trial.loss > most) continue;
+        own.loss = without.trial.loss;
+        held.push_back(std::move(own));
+        current = std::move(without);
     }
     return held;
 }
@@ -205,11 +218,14 @@ PartSearch chooseParts(const FitSamples& all, const FitOptions& fit, const PartO
         if (isFree(*model, part, stated, samples.isotropic)) open.emplace_back(part.name);
     Trials trials(samples, fit, options, 1 + open.size() * (open.size() + 1) / 2);
     PartSearch search;
+    // Pixels are without noise, and hundreds for each parameter.
+    const bool pixels = samples.origin == SampleOrigin::pixels;
+    const double unseen = pixels ? options.unseen : 0;
     TriedParts current = trials.fitted({}, nullptr);
-    trials.holdOut(current);
+    if (!pixels) trials.holdOut(current);
     current.trial.taken = true;
     search.trials.push_back(current.trial);
-    while (current.trial.failure.empty() && !open.empty()) {
+    while (current.trial.failure.empty() && !open.empty() && current.trial.loss > unseen) {
         std::vector<TriedParts> wider;
         for (const std::string& name : open) {
             std::vector<std::string> parts = search.parts;
@@ -223,9 +239,9 @@ PartSearch chooseParts(const FitSamples& all, const FitOptions& fit, const PartO
         const auto taken = std::ranges::find_if(wider, [&](TriedParts& own) {
             if (!own.trial.failure.empty() || own.trial.loss > least * current.trial.loss)
                 return false;
-            trials.holdOut(own);
-            own.trial.taken =
-                own.trial.heldOut && *own.trial.heldOut <= least * *current.trial.heldOut;
+            if (!pixels) trials.holdOut(own);
+            own.trial.taken = pixels || (own.trial.heldOut &&
+                                         *own.trial.heldOut <= least * *current.trial.heldOut);
             return own.trial.taken;
         });
         for (const TriedParts& own : wider) search.trials.push_back(own.trial);
@@ -235,7 +251,8 @@ PartSearch chooseParts(const FitSamples& all, const FitOptions& fit, const PartO
         std::erase(open, search.parts.back());
     }
     if (current.trial.failure.empty())
-        search.held = undecided(*model, samples, trials, current, options.leastGain);
+        search.held = undecided(*model, samples, trials, current,
+                                std::max(current.trial.loss / (1 - options.leastGain), unseen));
     return search;
 }
 

@@ -23,14 +23,14 @@ const Model* modelWithParts(std::string_view spec);
 struct PartTrial {
     std::vector<std::string> parts;  ///< in the model
     double loss = 0;                 ///< FitResult::loss
-    /// ModelRank::heldOut. None where it was not measured: the loss itself falls by less than
-    /// `leastGain`, or a part that lowers it more was taken.
+    /// ModelRank::heldOut. None where it was not measured: of pixels, and where the loss itself
+    /// falls by less than `leastGain`, or a part that lowers it more was taken.
     std::optional<double> heldOut = {};
     bool taken = false;        ///< the search went on from here
     std::string failure = {};  ///< why there is no fit
 };
 
-/// A parameter of a part that is not worth fitting.
+/// A parameter that is not worth fitting.
 struct HeldParameter {
     std::string name;
     double value = 0;  ///< the default of the standard
@@ -40,7 +40,7 @@ struct HeldParameter {
 struct PartSearch {
     std::vector<std::string> parts;        ///< found worth it
     std::vector<PartTrial> trials;         ///< the first has no parts
-    std::vector<HeldParameter> held = {};  ///< of these parts
+    std::vector<HeldParameter> held = {};  ///< of these parts and the base
 };
 
 /// withParts for what a search has found, with the parameters that it holds.
@@ -50,6 +50,8 @@ struct PartOptions {
     /// A part is worth it if it lowers the held-out loss by this share. Folds of the same data
     /// differ by less. A parameter of a part is fitted if it lowers the loss by as much.
     double leastGain = 0.02;
+    /// Of pixels: a loss that nobody sees, a twentieth of a unit of L*, is no reason for a part.
+    double unseen = 5e-4;
     /// Samples that the search draws, of others than pixels, which have FitSamples::fewer; the fit
     /// that follows takes all.
     std::size_t samples = 4096;
@@ -57,9 +59,10 @@ struct PartOptions {
 };
 
 /// Adds the part that lowers the loss most among those that lower the held-out loss
-/// (compare_models.h) by `leastGain`, again and again. Each fit starts at the one without the part.
-/// Parts whose parameters are all held or stated are not tried. Then each parameter of the parts
-/// is held at its default unless it lowers the loss by `leastGain`: the data do not decide it.
+/// (compare_models.h), or of pixels the loss itself, by `leastGain`, again and again. Each fit
+/// starts at the one without the part. Parts whose parameters are all held or stated are not tried.
+/// Then each parameter but the base's colours is held at its default unless it lowers the loss by
+/// `leastGain`: the data do not decide it.
 PartSearch chooseParts(const FitSamples& samples, const FitOptions& fit,
                        const PartOptions& options = {});
 

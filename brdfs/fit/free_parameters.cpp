@@ -30,6 +30,13 @@ const FitRange* rangeOf(const Parameter& parameter, const Model& model, const Pa
     return found == parameter.fit.end() ? nullptr : &*found;
 }
 
+/// Whether it is an index of refraction of a standard material. Fits keep it within the range of
+/// their starts: beyond that of usual dielectrics it is a scale of the lobe, of which there are
+/// others.
+bool isIndex(const Model& model, const Parameter& parameter) {
+    return !model.parts.empty() && parameter.min == 1;
+}
+
 }  // namespace
 
 std::vector<FreeParameter> freeParameters(const Model& model, const Parameters& stated,
@@ -50,9 +57,10 @@ std::vector<FreeParameter> freeParameters(const Model& model, const Parameters& 
                 continue;
             }
         }
+        const bool usual = isIndex(model, parameter);
         free.push_back({.keys = {std::string(parameter.name)},
-                        .min = parameter.min,
-                        .max = parameter.max,
+                        .min = usual ? range->low : parameter.min,
+                        .max = usual ? range->high : parameter.max,
                         .logarithmic = range->logarithmic,
                         .startLow = range->low,
                         .startHigh = range->high,

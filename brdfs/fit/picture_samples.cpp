@@ -274,8 +274,12 @@ FitSamples Collector::finish(const Brdf& data, std::size_t lightCount) {
                 most = std::max(most, samples.values[c * count + k]);
             pixels.emplace_back(most, areas_[k]);
         }
-        constexpr double shown = 0.95;
-        const double bright = pixels.empty() ? 0 : quantile(std::move(pixels), shown);
+        // A sphere that is dark but for its highlight shows that in the picture.
+        constexpr double shown = 0.95, mostStops = 12;
+        double bright = 0;
+        for (const auto& pixel : pixels)
+            bright = std::max(bright, pixel.first / std::exp2(mostStops));
+        if (!pixels.empty()) bright = std::max(bright, quantile(std::move(pixels), shown));
         exposures.push_back(bright > 0 ? shownAsWhite / bright : 1);
     }
     if (std::ranges::all_of(samples.values, [](double v) { return v <= 0; }))

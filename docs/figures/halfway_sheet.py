@@ -28,6 +28,13 @@ def run(*words):
                           text=True).stdout
 
 
+def materials(data):
+    """Names and specifications of the 24."""
+    found = [(name, data / f'rgl/{name}_rgb.bsdf') for name in RGL]
+    found += [(name, data / f'merl_slices/{name}.slice') for name in MERL]
+    return found + [(spec, spec) for spec in MODELS]
+
+
 def pictures(program, source, form, folder, stem):
     """The six cells of a material."""
     cells = []
@@ -55,13 +62,10 @@ def row(name, size, error):
 def main():
     program, data, folder = sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3])
     folder.mkdir(parents=True, exist_ok=True)
-    materials = [(name, data / f'rgl/{name}_rgb.bsdf') for name in RGL]
-    materials += [(name, data / f'merl_slices/{name}.slice') for name in MERL]
-    materials += [(spec, spec) for spec in MODELS]
     cells = []
     print('| material | bytes | FLIP mean | largest | CIEDE2000 | dip % | peak % | ridge % |')
     print('|---|---|---|---|---|---|---|---|')
-    for n, (name, spec) in enumerate(materials):
+    for n, (name, spec) in enumerate(materials(data)):
         form = folder / f'{n:02d}.json'
         run(program, 'project', spec, '--form', 'halfway', '--precision', 'half', '-o', form,
             '--force', '--quiet')

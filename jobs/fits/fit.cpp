@@ -13,6 +13,7 @@
 #include <hshfit/pages/comparison.h>
 #include <hshfit/pages/gnuplot.h>
 #include <hshfit/pages/picture_error_json.h>
+#include <hshfit/pictures/poor.h>
 #include <hshfit/wording.h>
 
 #include <brdfs/catalog.h>
@@ -33,6 +34,8 @@
 
 namespace hshfit::jobs {
 namespace {
+
+constexpr std::size_t fewSamples = 4096;  ///< of fits that are tried
 
 /// `drawn`: into figures or a page, which have a row for each measured sample.
 brdfs::FitOptions optionsOf(const FitOptions& options, const Brdf& data, bool drawn) {
@@ -193,13 +196,39 @@ std::optional<brdfs::PartSearch> restrictParts(const FitOptions& options,
     return search;
 }
 
+/// The same parts of a standard material by `log`, which follows highlights beyond white, with
+/// nothing held: in place of the fit if its FLIP is lower by 5 %.
+void tryOtherLoss(const Brdf& data, const FitOptions& options, const PictureReference& seen,
+                  brdfs::FitOptions& how, brdfs::FitSamples& samples, Fitted& fitted) {
+    constexpr double leastGain = 0.95;
+    brdfs::FitOptions other = how;
+    other.loss = brdfs::Loss::Kind::log;
+    other.model = brdfs::withParts(options.model, fitted.search->parts);
+    other.starts = std::max(1, how.starts / 4);
+    FitOptions chosen = options;
+    if (chosen.samples == 0) chosen.samples = fewSamples;
+    brdfs::FitSamples places = samplesOf(chosen, data, other.loss);
+    brdfs::FitResult result = brdfs::fit(places, other);
+    PictureError picture = seen.errorOf(*brdfs::openFit(result));
+    for (const auto& [loss, flip] :
+         {std::pair(how.loss, fitted.picture->flip.mean), std::pair(other.loss, picture.flip.mean)})
+        fitted.losses.push_back({std::string(brdfs::lossName(loss)), flip});
+    if (picture.flip.mean > leastGain * fitted.picture->flip.mean ||
+        !(result.converged || options.accept))
+        return;
+    how = std::move(other);
+    samples = std::move(places);
+    fitted.result = std::move(result);
+    fitted.search->held.clear();
+    fitted.picture = std::move(picture);
+}
+
 /// Fits in place of a poor one, made in brief: a second lobe and sums of the catalog that are known
 /// to describe much, where no standard material was asked for, and the model by other losses.
 /// `seen`: of the data; null where it has no pictures.
 std::vector<TriedFit> triedFits(const Brdf& data, const brdfs::FitSamples& samples,
                                 const FitOptions& options, brdfs::FitOptions how,
                                 const PictureReference* seen) {
-    constexpr std::size_t few = 4096;
     const bool pixels = samples.origin == brdfs::SampleOrigin::pixels;
     const std::string own = how.model;
     how.starts = 2;
@@ -227,7 +256,7 @@ std::vector<TriedFit> triedFits(const Brdf& data, const brdfs::FitSamples& sampl
             // A model that these samples do not determine is no better one.
         }
     };
-    const brdfs::FitSamples places = samples.drawn(pixels ? samples.size() : few, how.seed);
+    const brdfs::FitSamples places = samples.drawn(pixels ? samples.size() : fewSamples, how.seed);
     std::vector<std::string> wider;
     if (!brdfs::modelWithParts(own))
         wider = {own + (own.starts_with("ggx") ? "+eon" : "+ggx"), "lambert+ggx",
@@ -235,14 +264,15 @@ std::vector<TriedFit> triedFits(const Brdf& data, const brdfs::FitSamples& sampl
     for (const std::string& model : wider)
         if (model != own && std::ranges::find(tried, model, &TriedFit::model) == tried.end())
             attempt(model, places, {});
-    if (sampleSetting(options)) return tried;
+    // Of a standard material by default the other loss was tried already.
+    if (sampleSetting(options) || (seen && options.loss.empty() && wider.empty())) return tried;
     using Kind = brdfs::Loss::Kind;
     const Kind stated = how.loss;
     for (const Kind loss : {Kind::picture, Kind::log, Kind::logRelative}) {
         if (loss == stated || (loss != Kind::logRelative) != (seen != nullptr)) continue;
         how.loss = loss;
         FitOptions chosen = options;
-        chosen.samples = loss == Kind::picture ? 0 : few;
+        chosen.samples = loss == Kind::picture ? 0 : fewSamples;
         attempt(own, samplesOf(chosen, data, loss), std::string(brdfs::lossName(loss)));
         if (!tried.empty() && tried.back().model == own) tried.back().model = options.model;
     }
@@ -349,7 +379,7 @@ std::pair<Fitted, PreparedFiles> fitOpen(const Brdf& brdf, const std::string& da
     if (!page.empty()) files.page = std::make_unique<FileSet>(page, true, FileSet::Above::require);
     brdfs::FitOptions how =
         optionsOf(options, brdf, options.figures || !page.empty() || !options.certificate.empty());
-    const brdfs::FitSamples samples = samplesOf(options, brdf, how.loss);
+    brdfs::FitSamples samples = samplesOf(options, brdf, how.loss);
     const auto search = restrictParts(options, samples, how, listener);
     how.progress = listener.part("fit");
     how.uncertainty.progress = listener.part("errors");
@@ -359,6 +389,15 @@ std::pair<Fitted, PreparedFiles> fitOpen(const Brdf& brdf, const std::string& da
             fmt::format("{}: the fit of {} did not converge ({}); {} takes it as it "
                         "is",
                         data, options.model, fitted.result.message, Setting{"FitOptions::accept"}));
+    }
+    std::optional<PictureReference> seen;
+    // Between scattered samples the data are a guess: pictures of that say nothing of a fit.
+    if (!brdfs::areMeasured(brdf)) {
+        seen.emplace(brdf);
+        fitted.picture = seen->errorOf(*brdfs::openFit(fitted.result));
+        if (options.loss.empty() && search && how.loss == brdfs::Loss::Kind::picture &&
+            fitted.picture->flip.mean > PoorBounds{}.flip)
+            tryOtherLoss(brdf, options, *seen, how, samples, fitted);
     }
     // Metrics are those of f, not of pixels.
     const bool pixels = samples.origin == brdfs::SampleOrigin::pixels;
@@ -377,15 +416,9 @@ std::pair<Fitted, PreparedFiles> fitOpen(const Brdf& brdf, const std::string& da
         if (metric["name"] == "relative-l2-cosine" && metric["value"].is_number())
             fitted.relativeError = metric["value"];
     fitted.explained = explainedBy(fitted.result, samples, how.loss);
-    // Between scattered samples the data are a guess: pictures of that say nothing of a fit.
-    std::optional<PictureReference> seen;
     if (samples.origin == brdfs::SampleOrigin::measured) {
         const auto values = brdfs::predictedValues(fitted.result, samples);
         fitted.factors = brdfs::factorsOf(values, samples);
-    }
-    if (!brdfs::areMeasured(brdf)) {
-        seen.emplace(brdf);
-        fitted.picture = seen->errorOf(*brdfs::openFit(fitted.result));
     }
     if (options.advise)
         fitted.poor = judged(fitted, brdf, samples, data, options, how, seen ? &*seen : nullptr);
@@ -396,7 +429,9 @@ std::pair<Fitted, PreparedFiles> fitOpen(const Brdf& brdf, const std::string& da
                                            {"values", fitted.factors->count}};
     fitted.preset["fit"]["explained"] = fitted.explained;
     fitted.preset["fit"]["relative_error"] = fitted.relativeError;
-    if (search) fitted.preset["fit"]["parts"] = brdfs::searchJson(*search);
+    if (fitted.search) fitted.preset["fit"]["parts"] = brdfs::searchJson(*fitted.search);
+    for (const LossTrial& trial : fitted.losses)
+        fitted.preset["fit"]["losses"].push_back({{"loss", trial.loss}, {"flip", trial.flip}});
     files.residuals = residualsOf(samples, fitted.result, how.loss, options.residuals);
     if (files.figures)
         fitted.figures = addFitFigures(brdf, report, *options.figures, *files.figures, listener);

@@ -43,8 +43,8 @@ constexpr OptionRow fitRows[] = {
               "MODEL[:key=value,...][+MODEL...]: what is given is not fitted"}
         .takes({modelWords, Syntax::sum}),
     OptionRow{"extensions", at<&FitOptions::parts>,
-              "Of gltf-pbr and openpbr: auto (default) for the optional parts that held-out "
-              "directions find worth it, none, all, or names with commas"}
+              "Of gltf-pbr and openpbr: auto (default) for the optional parts that pixels or "
+              "held-out directions find worth it, none, all, or names with commas"}
         .takes({.syntax = Syntax::list})
         .inPython("parts"),
     OptionRow{"loss", at<&FitOptions::loss>,

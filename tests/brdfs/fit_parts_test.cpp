@@ -63,13 +63,13 @@ TEST(ChooseParts, TakesNoneWhereThereIsNone) {
         EXPECT_FALSE(search.trials[k].heldOut);  // no gain to be checked
         EXPECT_GT(search.trials[k].loss, 0);
     }
-    EXPECT_NE(textOf(search).find("not held out"), std::string::npos);
+    EXPECT_EQ(textOf(search).find("taken"), textOf(search).rfind("taken"));
 }
 
 // A coat of the standard's index, and one of another, seen through noise.
 TEST(ChooseParts, LeavesDefaultsThatTheDataDoNotContradict) {
     const std::string base = "openpbr:fuzz_weight=0,specular_weight=1,specular_ior=1.5";
-    for (const double index : {1.6, 2.2}) {
+    for (const double index : {1.6, 2.1}) {
         const PartSearch search = chooseParts(
             samplesOf("openpbr:base_color=.6/.3/.1,specular_roughness=.5,coat_weight=.7,"
                       "coat_roughness=.2,coat_ior=" +

@@ -107,6 +107,36 @@ TEST_F(Cli, FitFindsAGltfMaterialWithoutExtensions) {
     }
 }
 
+// A narrow lobe on black, of which the loss `picture` alone makes a mirror.
+TEST_F(Cli, DefaultFitsLookAsGoodAsThoseOfTheBestLoss) {
+    const auto flipOf = [&](const std::string& loss) {
+        const Answer answer = run("fit phong:exponent=200 --model gltf-pbr --accept --json" + loss);
+        EXPECT_EQ(answer.code, 0) << answer.err;
+        EXPECT_TRUE(keepsSchema(answer.out, "fit"));
+        return Json::parse(answer.out)["picture"]["flip"]["mean"].get<double>();
+    };
+    const double own = flipOf("");
+    for (const std::string loss : {"picture", "l2", "log"})
+        EXPECT_LT(own, 1.1 * flipOf(" --loss " + loss)) << loss;
+}
+
+// A metal without a coat, and a diffuse surface that has no lobe for a roughness to be of.
+TEST_F(Cli, DefaultFitsHaveNothingThatTheSourceDoesNotShow) {
+    const auto specOf = [&](const std::string& arguments) {
+        const Answer answer = run("fit " + arguments + " --json");
+        EXPECT_EQ(answer.code, 0) << answer.err;
+        return Json::parse(answer.out)["spec"].get<std::string>();
+    };
+    const std::string metal = specOf("ggx:alpha=.02,F0=.9 --model openpbr");
+    EXPECT_EQ(metal.find("coat"), std::string::npos) << metal;
+    const std::string_view key = "specular_roughness=";
+    ASSERT_NE(metal.find(key), std::string::npos) << metal;
+    EXPECT_NEAR(std::stod(metal.substr(metal.find(key) + key.size())), std::sqrt(0.02), 1e-5);
+    const std::string chalk = specOf("oren-nayar:sigma=.5 --model gltf-pbr");
+    EXPECT_EQ(chalk.find("oughness"), std::string::npos) << chalk;
+    EXPECT_EQ(chalk.find("ior"), std::string::npos) << chalk;
+}
+
 TEST_F(Cli, MeshIsTheUsers) {
     write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n");
     const Answer answer = run("export gltf-pbr --target gltf --name t --mesh " + path("t.obj") +
