@@ -71,9 +71,6 @@ std::string text(const jobs::Fitted& fitted, const FitArguments& arguments) {
     }
     lines += instrumentText(result);
     if (fitted.search) lines += brdfs::textOf(*fitted.search);
-    for (const jobs::LossTrial& trial : fitted.losses)
-        lines += fmt::format("  {:<40} FLIP {:.3f}{}\n", "by the loss " + trial.loss, trial.flip,
-                             fitted.preset["fit"]["loss"] == trial.loss ? ", taken" : "");
     for (const auto& set : result.ambiguous)
         lines += fmt::format("  ambiguous together: {}\n", fmt::join(set, ", "));
     lines += fmt::format("  rms residual {:.6g} over {} values, {} iterations, {}\n", result.loss,

@@ -196,39 +196,14 @@ std::optional<brdfs::PartSearch> restrictParts(const FitOptions& options,
     return search;
 }
 
-/// The same parts of a standard material by `log`, which follows highlights beyond white, with
-/// nothing held: in place of the fit if its FLIP is lower by 5 %.
-void tryOtherLoss(const Brdf& data, const FitOptions& options, const PictureReference& seen,
-                  brdfs::FitOptions& how, brdfs::FitSamples& samples, Fitted& fitted) {
-    constexpr double leastGain = 0.95;
-    brdfs::FitOptions other = how;
-    other.loss = brdfs::Loss::Kind::log;
-    other.model = brdfs::withParts(options.model, fitted.search->parts);
-    other.starts = std::max(1, how.starts / 4);
-    FitOptions chosen = options;
-    if (chosen.samples == 0) chosen.samples = fewSamples;
-    brdfs::FitSamples places = samplesOf(chosen, data, other.loss);
-    brdfs::FitResult result = brdfs::fit(places, other);
-    PictureError picture = seen.errorOf(*brdfs::openFit(result));
-    for (const auto& [loss, flip] :
-         {std::pair(how.loss, fitted.picture->flip.mean), std::pair(other.loss, picture.flip.mean)})
-        fitted.losses.push_back({std::string(brdfs::lossName(loss)), flip});
-    if (picture.flip.mean > leastGain * fitted.picture->flip.mean ||
-        !(result.converged || options.accept))
-        return;
-    how = std::move(other);
-    samples = std::move(places);
-    fitted.result = std::move(result);
-    fitted.search->held.clear();
-    fitted.picture = std::move(picture);
-}
-
 /// Fits in place of a poor one, made in brief: a second lobe and sums of the catalog that are known
 /// to describe much, where no standard material was asked for, and the model by other losses.
-/// `seen`: of the data; null where it has no pictures.
+/// `seen`: of the data; null where it has no pictures. A lower FLIP does not count where the
+/// colours of the sphere are further off than in the poor fit, as those of a sphere that is lit all
+/// over.
 std::vector<TriedFit> triedFits(const Brdf& data, const brdfs::FitSamples& samples,
                                 const FitOptions& options, brdfs::FitOptions how,
-                                const PictureReference* seen) {
+                                const PictureReference* seen, const Fitted& poor) {
     const bool pixels = samples.origin == brdfs::SampleOrigin::pixels;
     const std::string own = how.model;
     how.starts = 2;
@@ -247,7 +222,11 @@ std::vector<TriedFit> triedFits(const Brdf& data, const brdfs::FitSamples& sampl
             if (result.values < 2 * result.parameters.size()) return;
             tried.push_back(
                 {.model = model, .loss = loss, .explained = explainedBy(result, places, how.loss)});
-            if (seen) tried.back().flip = seen->errorOf(*brdfs::openFit(result)).flip.mean;
+            if (seen) {
+                const PictureError error = seen->errorOf(*brdfs::openFit(result));
+                if (error.colour.mean <= poor.picture->colour.mean)
+                    tried.back().flip = error.flip.mean;
+            }
             if (places.origin != brdfs::SampleOrigin::measured) return;
             const auto values = brdfs::predictedValues(result, places);
             if (const auto factors = brdfs::factorsOf(values, places))
@@ -264,8 +243,7 @@ std::vector<TriedFit> triedFits(const Brdf& data, const brdfs::FitSamples& sampl
     for (const std::string& model : wider)
         if (model != own && std::ranges::find(tried, model, &TriedFit::model) == tried.end())
             attempt(model, places, {});
-    // Of a standard material by default the other loss was tried already.
-    if (sampleSetting(options) || (seen && options.loss.empty() && wider.empty())) return tried;
+    if (sampleSetting(options)) return tried;
     using Kind = brdfs::Loss::Kind;
     const Kind stated = how.loss;
     for (const Kind loss : {Kind::picture, Kind::log, Kind::logRelative}) {
@@ -292,7 +270,7 @@ std::optional<Poor> judged(const Fitted& fitted, const Brdf& brdf, const brdfs::
     if (!options.loss.empty()) call.settings.push_back({"FitOptions::loss", options.loss});
     if (!options.sigma.empty()) call.settings.push_back({"FitOptions::sigma", options.sigma});
     return judgeFit(fitted.picture, call,
-                    [&] { return triedFits(brdf, samples, options, how, seen); });
+                    [&] { return triedFits(brdf, samples, options, how, seen, fitted); });
 }
 
 /// The residuals' file, complete but not yet under its name: none if no path is given.
@@ -379,7 +357,7 @@ std::pair<Fitted, PreparedFiles> fitOpen(const Brdf& brdf, const std::string& da
     if (!page.empty()) files.page = std::make_unique<FileSet>(page, true, FileSet::Above::require);
     brdfs::FitOptions how =
         optionsOf(options, brdf, options.figures || !page.empty() || !options.certificate.empty());
-    brdfs::FitSamples samples = samplesOf(options, brdf, how.loss);
+    const brdfs::FitSamples samples = samplesOf(options, brdf, how.loss);
     const auto search = restrictParts(options, samples, how, listener);
     how.progress = listener.part("fit");
     how.uncertainty.progress = listener.part("errors");
@@ -395,9 +373,6 @@ std::pair<Fitted, PreparedFiles> fitOpen(const Brdf& brdf, const std::string& da
     if (!brdfs::areMeasured(brdf)) {
         seen.emplace(brdf);
         fitted.picture = seen->errorOf(*brdfs::openFit(fitted.result));
-        if (options.loss.empty() && search && how.loss == brdfs::Loss::Kind::picture &&
-            fitted.picture->flip.mean > PoorBounds{}.flip)
-            tryOtherLoss(brdf, options, *seen, how, samples, fitted);
     }
     // Metrics are those of f, not of pixels.
     const bool pixels = samples.origin == brdfs::SampleOrigin::pixels;
@@ -430,8 +405,6 @@ std::pair<Fitted, PreparedFiles> fitOpen(const Brdf& brdf, const std::string& da
     fitted.preset["fit"]["explained"] = fitted.explained;
     fitted.preset["fit"]["relative_error"] = fitted.relativeError;
     if (fitted.search) fitted.preset["fit"]["parts"] = brdfs::searchJson(*fitted.search);
-    for (const LossTrial& trial : fitted.losses)
-        fitted.preset["fit"]["losses"].push_back({{"loss", trial.loss}, {"flip", trial.flip}});
     files.residuals = residualsOf(samples, fitted.result, how.loss, options.residuals);
     if (files.figures)
         fitted.figures = addFitFigures(brdf, report, *options.figures, *files.figures, listener);

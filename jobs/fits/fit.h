@@ -28,8 +28,7 @@ struct FitOptions {
     /// brdfs::findLoss. Empty: l2 with stated uncertainties; for scattered samples cosine, or
     /// log-relative where they span more than brdfs::mostDecades; cosine where another option is
     /// about single samples (robust, weights, places, scans, budget, bootstrap, profile, residuals,
-    /// bands); else picture, whose spheres look most like those of the data. Of a model with
-    /// optional parts whose spheres look poor, log where its FLIP is lower by 5 %.
+    /// bands); else picture, whose spheres look most like those of the data.
     std::string loss = {};
     std::string robust = "none";   ///< brdfs::findRobust
     std::string weights = "auto";  ///< brdfs::findSampleWeights
@@ -70,12 +69,6 @@ OptionRows<brdfs::InstrumentText> instrumentOptions();
 /// The name of the loss that these options ask for with these data.
 std::string lossOf(const FitOptions& options, const Brdf& data);
 
-/// A loss that a default was chosen from, with the mean FLIP of its fit.
-struct LossTrial {
-    std::string loss;
-    double flip = 0;
-};
-
 struct Fitted {
     brdfs::FitResult result;
     std::optional<brdfs::PartSearch> search = {};  ///< of a model with parts
@@ -89,7 +82,6 @@ struct Fitted {
     /// over the samples; of `picture` over the nodes of a comparison.
     double relativeError = 0;
     std::optional<PictureError> picture = {};          ///< of the fit against the data
-    std::vector<LossTrial> losses = {};                ///< that were tried; empty: one
     std::optional<brdfs::SampleFactors> factors = {};  ///< of scattered samples
     std::optional<Poor> poor = {};  ///< the energy captured is 1 - relativeError^2
     FigureFiles figures = {};
