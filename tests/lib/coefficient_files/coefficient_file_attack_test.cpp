@@ -185,7 +185,7 @@ TEST_F(CoefficientFileAttack, WrongValuesAreRefused) {
         {"/basis/order", 3, "has 4 values for each channel; order 3 needs 9"},
         {"/basis/index", "l+m", "l*(l+1)+m"},
         {"/quantity", "radiance", "'brdf' or 'brdf_cosine'"},
-        {"/channel_kind", "cmyk", "'grey', 'rgb' or 'spectral'"},
+        {"/channel_kind", "cmyk", "'grey', 'rgb', 'spectral' or 'named'"},
         {"/channel_kind", "grey", "array of 1 names"},
         {"/channel_kind", "spectral", "'wavelengths_nm' is missing"},
         {"/channels", {"G", "R", "B"}, "has to be [\"R\",\"G\",\"B\"]"},
