@@ -5,11 +5,12 @@
 #include "outputs.h"
 #include "page.h"
 #include "standard_files.h"
-#include "within.h"
 
 #include <hshfit/error.h>
 #include <hshfit/files/json_fields.h>
 #include <hshfit/files/printable.h>
+
+#include <jobs/common/shared_options.h>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -43,20 +44,7 @@ void addCommand(CLI::App& app, Globals& globals, const Command& row) {
 }
 
 void addRgb(CLI::App& command, bool& rgb) {
-    command.add_flag("--rgb", rgb,
-                     "Turn wavelengths into linear Rec. 709 (CIE 1931 2 degrees, D65)");
-}
-
-void addQuadrature(CLI::App& command, double& tolerance, double& maxEvaluations) {
-    command
-        .add_option("--tolerance", tolerance,
-                    "Relative error of the quadrature to refine to (default: 1e-6, tables 3e-3)")
-        ->check(within(jobs::bounds::tolerance));
-    command
-        .add_option("--max-evaluations", maxEvaluations,
-                    "BRDF evaluations per outgoing direction before giving up")
-        ->check(within(jobs::bounds::evaluations))
-        ->capture_default_str();
+    command.add_flag("--rgb", rgb, std::string(jobs::rgbRow({}).help));
 }
 
 std::vector<double> parseNumbers(const std::string& text, std::size_t count,

@@ -38,9 +38,6 @@ void addCommand(CLI::App& app, Globals& globals, const Command& row);
 /// The option --rgb.
 void addRgb(CLI::App& command, bool& rgb);
 
-/// The options --tolerance and --max-evaluations of a projection.
-void addQuadrature(CLI::App& command, double& tolerance, double& maxEvaluations);
-
 /// `count` finite numbers with commas between them. Throws UsageError that names `option` and asks
 /// for `form`.
 std::vector<double> parseNumbers(const std::string& text, std::size_t count,

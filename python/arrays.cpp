@@ -166,11 +166,6 @@ void requireWithin(const char* name, double value, double low, double high) {
     throw UsageError(fmt::format("{}: {} is not from {} to {}", name, value, low, high));
 }
 
-void requireQuadrature(double tolerance, double maxEvaluations) {
-    if (tolerance != 0) requireWithin("tolerance", tolerance, jobs::bounds::tolerance);
-    requireWithin("max_evaluations", maxEvaluations, jobs::bounds::evaluations);
-}
-
 double orNaN(const std::optional<double>& value) {
     return value.value_or(std::numeric_limits<double>::quiet_NaN());
 }

@@ -68,8 +68,6 @@ void requireWithin(const char* name, Value value, const jobs::Bounds<Number>& bo
     requireWithin(name, static_cast<double>(value), static_cast<double>(bounds.least),
                   static_cast<double>(bounds.most));
 }
-/// Refuses a tolerance, where 0 is the BRDF's own, and a number of evaluations out of range.
-void requireQuadrature(double tolerance, double maxEvaluations);
 /// An optional number, NaN where there is none.
 double orNaN(const std::optional<double>& value);
 

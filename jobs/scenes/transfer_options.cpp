@@ -11,52 +11,32 @@ namespace {
 
 using options::at;
 using options::spelled;
-using MeshSides = decltype(TransferMeshOptions::sides);
 
-/// The place of a name among those of an enumeration.
-template <class Enumeration, std::size_t count>
-Enumeration numbered(const std::array<std::string_view, count>& names, const std::string& name) {
-    const auto found = std::ranges::find(names, name);
-    if (found == names.end()) throw spelling::unknown("value", name, names);
-    return static_cast<Enumeration>(found - names.begin());
-}
-
-template <std::size_t count>
-std::vector<Word> wordsIn(const std::array<std::string_view, count>& names) {
-    std::vector<Word> words;
-    for (const std::string_view name : names) words.push_back({std::string(name)});
-    return words;
-}
-
-TransferKind parseTransferKind(const std::string& name) {
-    return numbered<TransferKind>(transferKinds, name);
-}
-
-std::string_view transferKindName(TransferKind kind) {
-    return transferKinds[static_cast<std::size_t>(kind)];
-}
-
-std::vector<Word> transferKindWords() {
-    return wordsIn(transferKinds);
-}
-
-MeshSides parseSides(const std::string& name) {
-    return numbered<MeshSides>(transferSides, name);
-}
-
-std::string_view sidesName(MeshSides sides) {
-    return transferSides[static_cast<std::size_t>(sides)];
-}
-
-std::vector<Word> sidesWords() {
-    return wordsIn(transferSides);
-}
+/// An enumeration by the names of its values, in their order.
+template <const auto& names, class Enumeration>
+struct Named {
+    static Enumeration parse(const std::string& name) {
+        const auto found = std::ranges::find(names, name);
+        if (found == names.end()) throw spelling::unknown("value", name, names);
+        return static_cast<Enumeration>(found - names.begin());
+    }
+    static std::string_view name(Enumeration value) {
+        return names[static_cast<std::size_t>(value)];
+    }
+    static std::vector<Word> words() {
+        std::vector<Word> all;
+        for (const std::string_view name : names) all.push_back({std::string(name)});
+        return all;
+    }
+};
+using Kinds = Named<transferKinds, TransferKind>;
+using MeshSides = Named<transferSides, decltype(TransferMeshOptions::sides)>;
 
 constexpr OptionRow transferRows[] = {
-    OptionRow{"kind", spelled<parseTransferKind, transferKindName, &TransferOptions::kind>,
+    OptionRow{"kind", spelled<Kinds::parse, Kinds::name, &TransferOptions::kind>,
               "Light past nothing, past shadows, or by other surfaces too; the simpler kinds are "
               "written as well"}
-        .takes({.words = transferKindWords, .complete = true}),
+        .takes({.words = Kinds::words, .complete = true}),
     OptionRow{"passes", at<&TransferOptions::passes>, "Reflections at other surfaces"}.within(
         bounds::passes),
     OptionRow{"rays", at<&TransferOptions::rays>, "Rays of each vertex"}.within(
@@ -81,9 +61,10 @@ constexpr OptionRow transferRows[] = {
               "The longest edge of a triangle; longer ones are halved; 0: none are (default: 1/32 "
               "of the scene's diagonal)"},
     OptionRow{"sides",
-              spelled<parseSides, sidesName, &TransferOptions::mesh, &TransferMeshOptions::sides>,
+              spelled<MeshSides::parse, MeshSides::name, &TransferOptions::mesh,
+                      &TransferMeshOptions::sides>,
               "Sides of surfaces with vertices; automatic: both of objects with open edges"}
-        .takes({.words = sidesWords, .complete = true}),
+        .takes({.words = MeshSides::words, .complete = true}),
     OptionRow{"seed", at<&TransferOptions::seed>, "Seed of the rays"},
     OptionRow{"memory", at<&TransferOptions::memory>, "The most memory that may be needed, MB"}
         .within(bounds::transferMemory),
