@@ -85,3 +85,12 @@ function(hshfit_part name)
                    REQUIRES ${ARG_REQUIRES} LIBS ${ARG_LIBS})
   set_property(GLOBAL APPEND PROPERTY hshfit_components ${name})
 endfunction()
+
+# hshfit_joint_sources(TARGET NAME SOURCES…): sources of TARGET that are compiled as one with
+# HSHFIT_UNITY: what the headers that they share cost is paid once. Names in their anonymous
+# namespaces meet.
+function(hshfit_joint_sources target name)
+  target_sources(${target} PRIVATE ${ARGN})
+  set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+  set_source_files_properties(${ARGN} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${name})
+endfunction()

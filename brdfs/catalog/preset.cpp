@@ -50,8 +50,8 @@ std::string quoted(const std::vector<std::string>& names) {
     return fmt::format("'{}'", fmt::join(names, "', '"));
 }
 
-std::unique_ptr<Brdf> openMaterial(const PresetCollection& collection, const std::string& where,
-                                   std::string_view name) {
+std::unique_ptr<Brdf> openFrom(const PresetCollection& collection, const std::string& where,
+                               std::string_view name) {
     if (const auto* material = findMaterial(collection, name))
         return openSpec(material->spec, fmt::format("{}/{}", where, name));
     std::vector<std::string> names;
@@ -119,7 +119,7 @@ std::unique_ptr<Brdf> openPreset(std::string_view text, const std::string& where
 
 std::unique_ptr<Brdf> openMaterial(std::string_view collection, const std::string& where,
                                    std::string_view material) {
-    return openMaterial(parsePresetCollection(collection, where), where, material);
+    return openFrom(parsePresetCollection(collection, where), where, material);
 }
 
 std::unique_ptr<Brdf> openNamedPreset(std::string_view name) {
@@ -129,8 +129,7 @@ std::unique_ptr<Brdf> openNamedPreset(std::string_view name) {
     if (const auto index = findPresetCollection(collection)) {
         const std::string_view material =
             collection.size() < name.size() ? name.substr(collection.size() + 1) : "";
-        return openMaterial(presetCollection(*index), fmt::format("preset:{}", collection),
-                            material);
+        return openFrom(presetCollection(*index), fmt::format("preset:{}", collection), material);
     }
     std::vector<std::string_view> known;
     for (const Preset& preset : presets()) known.push_back(preset.name);

@@ -1,5 +1,6 @@
 #include <brdfs/fit/correlated_spread.h>
 
+#include <brdfs/fit/dense.h>
 #include <brdfs/fit/whitening.h>
 
 #include <tbb/parallel_for.h>
@@ -9,14 +10,8 @@
 namespace hshfit::brdfs {
 namespace {
 
-using Matrix = Eigen::MatrixXd;
-
 /// Sums are made in this many parts whatever the number of threads, so that it does not show.
 constexpr std::size_t parts = 8;
-
-Eigen::Index at(std::size_t i) {
-    return static_cast<Eigen::Index>(i);
-}
 
 }  // namespace
 

@@ -1,6 +1,7 @@
 #include <brdfs/fit/dispersed_problem.h>
 
 #include <brdfs/catalog/metal_spec.h>
+#include <brdfs/fit/dense.h>
 #include <brdfs/fit/split_models.h>
 #include <brdfs/rows/spec.h>
 #include <hshfit/each_in_parallel.h>
@@ -14,12 +15,6 @@
 
 namespace hshfit::brdfs {
 namespace {
-
-using Matrix = Eigen::MatrixXd;
-
-Eigen::Index at(std::size_t i) {
-    return static_cast<Eigen::Index>(i);
-}
 
 /// A parameter of the sum, whether shape or linear.
 struct Named {
@@ -300,7 +295,6 @@ Equations DispersedProblem::mixedEquations(std::span<const double> coefficients,
     result.gradient.assign(gradient.data(), gradient.data() + n);
     result.hessian.assign(hessian.data(), hessian.data() + n * n);
     if (inverse.empty()) return result;
-    constexpr double leastFreedom = 1e-6;
     const Matrix own = Eigen::Map<const Matrix>(inverse.data(), n, n) / normalisation_;
     const Eigen::VectorXd leverages = (slopes * own).cwiseProduct(slopes).rowwise().sum();
     const Eigen::VectorXd out =

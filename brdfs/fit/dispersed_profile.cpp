@@ -1,5 +1,6 @@
 #include <brdfs/fit/dispersed_profile.h>
 
+#include <brdfs/fit/dense.h>
 #include <brdfs/fit/minimum_study.h>
 
 #include <algorithm>
@@ -8,13 +9,6 @@
 
 namespace hshfit::brdfs {
 namespace {
-
-using Matrix = Eigen::MatrixXd;
-using Vector = Eigen::VectorXd;
-
-Eigen::Index at(std::size_t i) {
-    return static_cast<Eigen::Index>(i);
-}
 
 /// A problem in coefficients of which one, the pivot, is replaced by a reported value of its curve.
 class Exchanged {

@@ -2,6 +2,7 @@
 
 #include <brdfs/fit/correlated_spread.h>
 #include <brdfs/fit/covariance.h>
+#include <brdfs/fit/dense.h>
 #include <brdfs/fit/dispersed_profile.h>
 #include <brdfs/fit/minimum_study.h>
 #include <brdfs/fit/percentiles.h>
@@ -20,12 +21,6 @@
 
 namespace hshfit::brdfs {
 namespace {
-
-using Matrix = Eigen::MatrixXd;
-
-Eigen::Index at(std::size_t i) {
-    return static_cast<Eigen::Index>(i);
-}
 
 /// The parameters that a report states, one for each coefficient.
 struct Report {

@@ -60,7 +60,7 @@ std::vector<std::vector<double>> startsOf(const ParametricSum& sum, std::size_t 
 }
 
 /// x = u followed by linear parameters.
-std::vector<double> joined(std::vector<double> u, const std::vector<double>& linear) {
+std::vector<double> withLinear(std::vector<double> u, const std::vector<double>& linear) {
     u.insert(u.end(), linear.begin(), linear.end());
     return u;
 }
@@ -91,7 +91,7 @@ public:
         Minimum direct;
         std::vector<double> best;
         problem_.eliminated(u, false, best);
-        direct.x = joined(u, best);
+        direct.x = withLinear(u, best);
         direct = fromAll(direct, options);
         return byCost(direct, minimum) ? direct : minimum;
     }
@@ -124,7 +124,7 @@ public:
         Minimum minimum =
             minimise(eliminatedEquations(linear), u, shapes_.lower, shapes_.upper, options);
         problem_.eliminated(minimum.x, false, linear);
-        minimum.x = joined(std::move(minimum.x), linear);
+        minimum.x = withLinear(std::move(minimum.x), linear);
         return minimum;
     }
 
@@ -207,7 +207,7 @@ std::vector<Minimum> coarseMinima(const FitProblem& problem, bool linear,
         std::vector<double> best;
         Minimum& candidate = candidates[i];
         candidate.cost = problem.eliminated(places[i], false, best).cost;
-        if (!linear) candidate.cost = problem.joint(joined(places[i], best), false).cost;
+        if (!linear) candidate.cost = problem.joint(withLinear(places[i], best), false).cost;
         candidate.x = std::move(places[i]);
     });
     std::ranges::stable_sort(candidates, byCost);
@@ -248,7 +248,7 @@ std::vector<Minimum> coarseMinima(const FitProblem& problem, bool linear,
 
 /// Differences of costs that searches on few samples leave undecided, relative. Along a level
 /// valley those of pixels end up to 3e-4 apart, and each would be followed to the same end.
-constexpr double undecided = 1e-4, undecidedOfPixels = 1e-3;
+constexpr double undecidedOfCells = 1e-4, undecidedOfPixels = 1e-3;
 
 /// The first few that differ by more than a search leaves undecided.
 std::vector<Minimum> distinct(const std::vector<Minimum>& minima, std::size_t most,
@@ -369,7 +369,7 @@ Fitted searchMinimum(FitProblem& problem, const FitOptions& options) {
     const bool many = route == Route::byTwoParts;
     const FitSamples middle = samples.drawn(many ? middleCount : 1, options.seed);
     const FitProblem between(middle, problem.sum(), options.loss);
-    const double difference = samples.fewer ? undecidedOfPixels : undecided;
+    const double difference = samples.fewer ? undecidedOfPixels : undecidedOfCells;
     std::vector<Minimum> starts = distinct(minima, many || options.brief ? 1 : 3, difference);
     if (route != Route::direct) rank(small, linear, partOf(last, samples), difference, starts);
     Fitted best;

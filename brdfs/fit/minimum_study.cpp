@@ -1,5 +1,6 @@
 #include <brdfs/fit/minimum_study.h>
 
+#include <brdfs/fit/dense.h>
 #include <brdfs/fit/distributions.h>
 #include <brdfs/fit/scan_spread.h>
 #include <hshfit/linear_algebra/decompositions.h>
@@ -11,40 +12,29 @@
 namespace hshfit::brdfs {
 namespace {
 
-using DenseMatrix = Eigen::MatrixXd;
-using DenseVector = Eigen::VectorXd;
-
-/// Rounding leaves some of 1 - leverage where a value, or a scan, alone decides.
-constexpr double leastFreedom = 1e-6;
-
-Eigen::Index at(std::size_t i) {
-    return static_cast<Eigen::Index>(i);
-}
-
 /// (J^T W J)^-1 from the inverse of the normalised matrix.
-DenseMatrix unscaledInverse(const FitProblem& problem, std::span<const double> inverse,
-                            std::size_t n) {
-    return Eigen::Map<const DenseMatrix>(inverse.data(), at(n), at(n)) / problem.normalisation();
+Matrix unscaledInverse(const FitProblem& problem, std::span<const double> inverse, std::size_t n) {
+    return Eigen::Map<const Matrix>(inverse.data(), at(n), at(n)) / problem.normalisation();
 }
 
 /// The part of a matrix over all parameters that acts on one channel.
-DenseMatrix channelPart(const DenseMatrix& whole, const WeightedRows& rows, std::size_t channel,
-                        std::size_t shapes) {
+Matrix channelPart(const Matrix& whole, const WeightedRows& rows, std::size_t channel,
+                   std::size_t shapes) {
     std::vector<Eigen::Index> places;
     for (std::size_t i = 0; i < rows.columns; ++i)
         places.push_back(at(rows.place(i, channel, shapes)));
     return whole(places, places);
 }
 
-std::vector<double> leveragesOf(const WeightedRows& rows, const DenseMatrix& inverse,
+std::vector<double> leveragesOf(const WeightedRows& rows, const Matrix& inverse,
                                 std::size_t shapes) {
     std::vector<double> leverages(rows.residuals.size());
     for (std::size_t c = 0; c < rows.channels; ++c) {
-        const DenseMatrix own = channelPart(inverse, rows, c, shapes);
+        const Matrix own = channelPart(inverse, rows, c, shapes);
         for (std::size_t k = 0; k < rows.samples; ++k) {
             const std::size_t value = c * rows.samples + k;
-            const Eigen::Map<const DenseVector> slopes(rows.slopes.data() + value * rows.columns,
-                                                       at(rows.columns));
+            const Eigen::Map<const Vector> slopes(rows.slopes.data() + value * rows.columns,
+                                                  at(rows.columns));
             leverages[value] = slopes.dot(own * slopes);
         }
     }
@@ -54,7 +44,7 @@ std::vector<double> leveragesOf(const WeightedRows& rows, const DenseMatrix& inv
 std::vector<ScanSums> sumsOfScans(const WeightedRows& rows, const std::vector<std::size_t>& scans,
                                   std::size_t n, std::size_t shapes) {
     const std::size_t count = *std::ranges::max_element(scans) + 1;
-    std::vector<ScanSums> sums(count, {DenseMatrix::Zero(at(n), at(n)), DenseVector::Zero(at(n))});
+    std::vector<ScanSums> sums(count, {Matrix::Zero(at(n), at(n)), Vector::Zero(at(n))});
     for (std::size_t c = 0; c < rows.channels; ++c)
         for (std::size_t k = 0; k < rows.samples; ++k) {
             const std::size_t value = c * rows.samples + k;
@@ -73,8 +63,8 @@ std::vector<ScanSums> sumsOfScans(const WeightedRows& rows, const std::vector<st
 /// Above this number of values they hardly matter.
 constexpr std::size_t mostValues = 20'000;
 
-DenseMatrix wholeRows(const WeightedRows& rows, std::size_t n, std::size_t shapes) {
-    DenseMatrix whole = DenseMatrix::Zero(at(rows.channels * rows.samples), at(n));
+Matrix wholeRows(const WeightedRows& rows, std::size_t n, std::size_t shapes) {
+    Matrix whole = Matrix::Zero(at(rows.channels * rows.samples), at(n));
     for (std::size_t c = 0; c < rows.channels; ++c)
         for (std::size_t k = 0; k < rows.samples; ++k) {
             const std::size_t value = c * rows.samples + k;
@@ -106,8 +96,8 @@ std::shared_ptr<const VarianceFreedom> freedomAt(const FitProblem& problem,
     if (!byScan && (samples.sums || samples.size() * problem.channels() > mostValues)) return {};
     const std::size_t n = x.size(), shapes = problem.shapeCount();
     const WeightedRows rows = problem.weightedRows(x);
-    DenseMatrix own = unscaledInverse(problem, inverse, n);
-    DenseVector slopes = Eigen::Map<const DenseVector>(slope.data(), at(n));
+    Matrix own = unscaledInverse(problem, inverse, n);
+    Vector slopes = Eigen::Map<const Vector>(slope.data(), at(n));
     if (!byScan)
         return std::make_shared<const VarianceFreedom>(wholeRows(rows, n, shapes), std::move(own),
                                                        std::move(slopes));
@@ -129,7 +119,7 @@ std::vector<double> spreadOfScans(const FitProblem& problem, const VarianceFreed
         for (double& value : spread) value /= norm;
         return spread;
     }
-    const DenseMatrix spread = byScan.spread() / (norm * norm);
+    const Matrix spread = byScan.spread() / (norm * norm);
     return {spread.data(), spread.data() + spread.size()};
 }
 
@@ -198,8 +188,7 @@ Uncertainty studied(const StudiedMinimum& minimum) {
     const FitProblem& problem = minimum.problem;
     const std::size_t n = minimum.x.size(), shapes = problem.shapeCount();
     const WeightedRows rows = problem.weightedRows(minimum.x);
-    const DenseMatrix inverse =
-        unscaledInverse(problem, inverseOf(minimum.equations, minimum.fixed), n);
+    const Matrix inverse = unscaledInverse(problem, inverseOf(minimum.equations, minimum.fixed), n);
     Uncertainty result = influences({.residuals = rows.residuals,
                                      .models = rows.values,
                                      .leverages = leveragesOf(rows, inverse, shapes),
@@ -209,8 +198,7 @@ Uncertainty studied(const StudiedMinimum& minimum) {
                                      .scans = scanCount(problem.samples()),
                                      .scanParameters = parametersOfChannel(problem)});
     std::vector<double> degrees;
-    if (result.scansSuffice())
-        degrees = minimum.freedom->degrees(DenseMatrix::Identity(at(n), at(n)));
+    if (result.scansSuffice()) degrees = minimum.freedom->degrees(Matrix::Identity(at(n), at(n)));
     addErrors({inverse.data(), n * n}, minimum.slope, minimum.stated, minimum.sandwich, degrees,
               result);
     return result;

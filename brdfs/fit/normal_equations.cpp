@@ -2,6 +2,7 @@
 
 #include <brdfs/fit/column_blocks.h>
 #include <brdfs/fit/column_products.h>
+#include <brdfs/fit/dense.h>
 #include <brdfs/fit/whitening.h>
 
 #include <tbb/parallel_for.h>
@@ -12,9 +13,6 @@
 
 namespace hshfit::brdfs {
 namespace {
-
-using Matrix = Eigen::MatrixXd;
-using Vector = Eigen::VectorXd;
 
 struct Block {
     std::size_t begin, size;

@@ -1,5 +1,6 @@
 #include <brdfs/fit/scan_spread.h>
 
+#include <brdfs/fit/dense.h>
 #include <hshfit/error.h>
 #include <hshfit/linear_algebra/decompositions.h>
 
@@ -7,9 +8,6 @@
 
 namespace hshfit::brdfs {
 namespace {
-
-/// Rounding leaves some of 1 - leverage where a scan alone decides.
-constexpr double leastFreedom = 1e-6;
 
 /// L with L L^T = inverse, from the eigenvalues of the matrix scaled to a diagonal of 1.
 Eigen::MatrixXd rootOf(const Eigen::MatrixXd& inverse) {

@@ -1,5 +1,6 @@
 // The members of FitProblem for values whose errors are correlated.
 
+#include <brdfs/fit/dense.h>
 #include <brdfs/fit/normal_equations.h>
 #include <brdfs/fit/whitening.h>
 #include <hshfit/linear_algebra/decompositions.h>
@@ -10,13 +11,7 @@
 namespace hshfit::brdfs {
 namespace {
 
-using Matrix = Eigen::MatrixXd;
 using RowMajor = linear_algebra::RowMajor;
-using Vector = Eigen::VectorXd;
-
-Eigen::Index at(std::size_t i) {
-    return static_cast<Eigen::Index>(i);
-}
 
 }  // namespace
 

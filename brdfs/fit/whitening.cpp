@@ -1,5 +1,6 @@
 #include <brdfs/fit/whitening.h>
 
+#include <brdfs/fit/dense.h>
 #include <hshfit/brdf/directions.h>
 #include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
@@ -12,12 +13,6 @@
 
 namespace hshfit::brdfs {
 namespace {
-
-using Matrix = Eigen::MatrixXd;
-
-Eigen::Index at(std::size_t i) {
-    return static_cast<Eigen::Index>(i);
-}
 
 /// Degrees and nm: to the resolution of instruments.
 constexpr double sameNode = 0.01;

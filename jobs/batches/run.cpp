@@ -1,5 +1,7 @@
 #include "run.h"
 
+#include <jobs/common/clock.h>
+
 #include "costs.h"
 #include "item_key.h"
 #include "item_work.h"
@@ -11,7 +13,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <numeric>
 #include <optional>
 #include <thread>
@@ -19,8 +20,6 @@
 namespace hshfit::jobs {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 std::size_t processesOf(const BatchOptions& options) {
     if (options.processes > 0) return options.processes;
@@ -149,7 +148,7 @@ private:
         costLeft_ -= share_.costs[index];
         costMade_ += kept ? 0 : share_.costs[index];
         if (!event_) return;
-        const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+        const double seconds = secondsSince(start_);
         event_({.record = record,
                 .kept = kept,
                 .finished = result_.done + result_.failures.size(),
@@ -204,7 +203,7 @@ BatchRun runBatch(const std::string& manifest, const std::string& folder,
         run.all(*whole, true);
     }
     std::ranges::sort(result.failures, {}, &ItemRecord::name);
-    result.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    result.seconds = secondsSince(start);
     return result;
 }
 

@@ -1,5 +1,6 @@
 #include "export.h"
 
+#include <jobs/common/clock.h>
 #include <jobs/source/picture.h>
 #include <jobs/source/source.h>
 #include "export_engine.h"
@@ -30,7 +31,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -168,10 +168,9 @@ void addProposal(const Targets& chosen, const ExportOptions& options, const Brdf
     const bool shaders = std::ranges::any_of(
         chosen, [](const Target* target) { return target->kind == Target::Kind::shader; });
     if (!options.sampling.value_or(shaders)) return;
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     exported.proposal = proposalFor(brdf);
-    exported.proposalSeconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    exported.proposalSeconds = secondsSince(start);
 }
 
 std::string proposalTextOf(const Exported& exported) {

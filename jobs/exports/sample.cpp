@@ -1,5 +1,6 @@
 #include "sample.h"
 
+#include <jobs/common/clock.h>
 #include <jobs/source/source.h>
 #include "proposal.h"
 
@@ -13,7 +14,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <iterator>
 #include <utility>
 
@@ -48,10 +48,6 @@ std::unique_ptr<MixtureSampler> samplerFor(const Brdf& brdf, const std::string& 
                                             std::vector<MixtureRow>{{{1.0}, true}});
 }
 
-double secondsOf(const std::chrono::steady_clock::time_point& start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 SampleRow rowAt(const Brdf& brdf, const MixtureSampler& sampler, const Direction& wo,
                 const SampleOptions& options) {
     gpu::ProposalRow row = efficiencyRow(brdf, sampler, wo, {options.trials, options.seed});
@@ -61,14 +57,15 @@ SampleRow rowAt(const Brdf& brdf, const MixtureSampler& sampler, const Direction
 void draw(const Brdf& brdf, const MixtureSampler& sampler, const SampleOptions& options,
           Sampled& result) {
     UniformNumbers numbers(options.seed);
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     for (std::size_t k = 0; k < options.count; ++k) {
         stopIfRequested();
         const Sample s = sampler.sample(options.outgoing, numbers.next());
         result.drawn.push_back({s.wi, s.pdf, {}});
     }
     if (options.count > 0)
-        result.nanosecondsPerSample = secondsOf(start) * 1e9 / static_cast<double>(options.count);
+        result.nanosecondsPerSample =
+            secondsSince(start) * 1e9 / static_cast<double>(options.count);
     for (DrawnDirection& one : result.drawn) {
         stopIfRequested();
         one.weights = evaluate(brdf, one.wi, options.outgoing);
@@ -114,11 +111,11 @@ Sampled sample(const std::string& spec, const std::string& output, const SampleO
     result.brdf = brdf->name();
     result.channels = brdf->channels().names();
     const auto stored = storedProposal(spec);
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     const auto sampler = samplerFor(*brdf, spec, options.method, stored);
     const auto drawsProposal = [](const auto& part) { return part->name() == "proposal"; };
     result.stored = stored && std::ranges::any_of(sampler->parts(), drawsProposal);
-    result.buildSeconds = secondsOf(start);
+    result.buildSeconds = secondsSince(start);
     for (const auto& part : sampler->parts()) result.parts.emplace_back(part->name());
     result.reflects = sampler->reflects(options.outgoing);
     draw(*brdf, *sampler, options, result);

@@ -1,5 +1,7 @@
 #include "ltc.h"
 
+#include <jobs/common/clock.h>
+
 #include <hshfit/spelling.h>
 
 #include <brdfs/fit/ltc_files.h>
@@ -8,7 +10,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <chrono>
 
 namespace hshfit::jobs {
 namespace {
@@ -59,12 +60,11 @@ OptionRows<brdfs::LtcTableOptions> ltcOptions() {
 FittedLtc fitLtc(const std::string& model, const std::vector<std::string>& outputs,
                  const brdfs::LtcTableOptions& options, const Listener& listener) {
     for (const std::string& output : outputs) brdfs::ltcOutputs(output);
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     brdfs::LtcTableOptions how = options;
     how.progress = listener.part("ltc");
     FittedLtc result{.table = brdfs::fitLtcTable(model, how)};
-    result.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    result.seconds = secondsSince(start);
 
     FileSet files(".", true);
     for (const std::string& output : outputs)

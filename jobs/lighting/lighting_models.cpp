@@ -1,5 +1,7 @@
 #include "lighting_models.h"
 
+#include <jobs/common/clock.h>
+
 #include "lighting_cosines.h"
 
 #include <hshfit/bases/catalog.h>
@@ -13,7 +15,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <functional>
 
@@ -36,9 +37,9 @@ constexpr std::array lightingTable{
 };
 
 double secondsOf(const std::function<void()>& work) {
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return secondsSince(start);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "filtered.h"
 
+#include <jobs/common/clock.h>
+
 #include "facet_surface.h"
 #include "filter_checks.h"
 #include "level_pass.h"
@@ -15,7 +17,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -24,7 +25,6 @@
 namespace hshfit::jobs {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 constexpr const char* textureName = "material.ktx2";
 constexpr const char* harmonicsName = "harmonics.ktx2";
 constexpr const char* sidecarName = "material.json";
@@ -171,7 +171,7 @@ void write(const LevelPass& pass, FacetSurface& surface, const LobeTable& table,
     FilteredMapWriter writer(sidecar, texture, harmonics);
     if (processes.isFirst()) writer.begin();
     writeLevels(pass, table, sidecar, writer, listener);
-    answer.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    answer.seconds = secondsSince(start);
     answer.rate = static_cast<double>(answer.width * answer.height) / answer.seconds;
     answer.bytes = writer.bytes();
     files.write(sidecarName, toText(sidecar));

@@ -1,5 +1,6 @@
 #include "svbrdf.h"
 
+#include <jobs/common/clock.h>
 #include <jobs/source/quality.h>
 #include "halfway_materials.h"
 #include "level_checks.h"
@@ -21,7 +22,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -30,14 +30,8 @@
 namespace hshfit::jobs {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 Processes& processes() {
     return processesOfMaps();
-}
-
-double secondsSince(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 /// Texels of a row, taken again and again.

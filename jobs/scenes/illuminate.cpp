@@ -1,5 +1,7 @@
 #include "illuminate.h"
 
+#include <jobs/common/clock.h>
+
 #include "kept_rows.h"
 #include "record_picture.h"
 #include "scene_surfaces.h"
@@ -15,7 +17,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <ctime>
 #include <filesystem>
@@ -24,9 +25,6 @@
 namespace hshfit::jobs {
 namespace {
 
-double secondsSince(const std::chrono::steady_clock::time_point& start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 double cpuSeconds() {
     return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
@@ -59,7 +57,7 @@ ReferenceError errorAgainst(const RgbPicture& reference, const RgbPicture& pictu
 PathPicture taken(const SurfaceScene& scene, RadianceCache* cache, const Camera& camera,
                   const IlluminateOptions& options, const Listener& listener, KeptRows* kept,
                   IlluminatedCamera& result) {
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     const double cpu = cpuSeconds();
     PathPicture picture;
     if (cache) {
@@ -177,7 +175,7 @@ std::unique_ptr<RadianceCache> cacheOf(const SurfaceScene& scene, const CacheOpt
 
 Illuminated illuminate(const std::string& path, const std::string& folder,
                        const IlluminateOptions& options, const Listener& listener) {
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = Clock::now();
     Illuminated result{.scene = path};
     const scene::Scene read = scene::readScene(path, scene::Purpose::transport);
     const std::vector<const Camera*> cameras = camerasOf(read, options.camera);

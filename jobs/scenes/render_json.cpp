@@ -6,7 +6,6 @@ namespace hshfit::jobs {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Kind = RenderedPicture::Kind;
 
 Json pointLightsJson(const SphereRig& rig) {
     Json lights = Json::array();
@@ -29,13 +28,14 @@ Json pictureJson(const RenderedPicture& picture) {
     Json json = {{"brdf", picture.brdf},         {"by", kindName(picture.kind)},
                  {"row", picture.row},           {"column", picture.column},
                  {"exposure", picture.exposure}, {"not_finite", picture.notFinite}};
-    if (picture.kind != Kind::integration) {
+    if (picture.kind != RenderedPicture::Kind::integration) {
         json["basis"] = picture.basis;
         json["order"] = picture.order;
     }
-    if (picture.kind == Kind::difference) json["amplification"] = picture.amplification;
-    if (picture.kind != Kind::difference) json["error"] = picture.error;
-    if (picture.kind == Kind::integration) {
+    if (picture.kind == RenderedPicture::Kind::difference)
+        json["amplification"] = picture.amplification;
+    if (picture.kind != RenderedPicture::Kind::difference) json["error"] = picture.error;
+    if (picture.kind == RenderedPicture::Kind::integration) {
         json["evaluations"] = picture.evaluations;
         json["largest_error"] = picture.largest.error;
         json["largest_error_at"] = {{"column", picture.largest.column},

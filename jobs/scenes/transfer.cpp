@@ -1,5 +1,7 @@
 #include "transfer.h"
 
+#include <jobs/common/clock.h>
+
 #include "scene_surfaces.h"
 #include "transfer_clusters.h"
 #include "transfer_pictures.h"
@@ -15,17 +17,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 
 namespace hshfit::jobs {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(const Clock::time_point& start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 std::string inUnits(std::size_t bytes) {
     return fmt::format("{:.3g} MB", static_cast<double>(bytes) / 1e6);

@@ -1,6 +1,7 @@
 #include <brdfs/fit/instrument/instrument_study.h>
 
 #include <brdfs/fit/covariance.h>
+#include <brdfs/fit/dense.h>
 #include <brdfs/fit/instrument/instrument_system.h>
 #include <brdfs/fit/minimum_study.h>
 #include <brdfs/fit/percentiles.h>
@@ -23,13 +24,7 @@
 namespace hshfit::brdfs {
 namespace {
 
-using Matrix = Eigen::MatrixXd;
-using Vector = Eigen::VectorXd;
 using Indices = std::vector<Eigen::Index>;
-
-Eigen::Index at(std::size_t i) {
-    return static_cast<Eigen::Index>(i);
-}
 
 /// Leverages of values and, in all, of priors; the sum of squared gradient terms (HC3).
 struct Leverages {
@@ -39,7 +34,6 @@ struct Leverages {
 };
 
 Leverages leveragesOf(const WholeSystem& system, const Matrix& inverse) {
-    constexpr double leastFreedom = 1e-6;
     Leverages result;
     result.values.resize(system.rows().material.size());
     result.spread = Matrix::Zero(system.size(), system.size());

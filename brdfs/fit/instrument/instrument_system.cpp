@@ -1,18 +1,12 @@
 #include <brdfs/fit/instrument/instrument_system.h>
 
 #include <brdfs/fit/correlated_spread.h>
+#include <brdfs/fit/dense.h>
 #include <hshfit/linear_algebra/decompositions.h>
 
 #include <algorithm>
 
 namespace hshfit::brdfs {
-namespace {
-
-Eigen::Index at(std::size_t i) {
-    return static_cast<Eigen::Index>(i);
-}
-
-}  // namespace
 
 Equations equationsOf(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& spread) {
     Equations result;

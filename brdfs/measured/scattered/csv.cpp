@@ -14,8 +14,6 @@
 namespace hshfit::brdfs {
 namespace {
 
-using Columns = TableColumns;
-
 /// One unit of the file's angles in radians, and where it comes from.
 std::pair<double, std::string> unitOfAngles(const SampleTable& table, const std::string& where,
                                             AngleUnit asked) {
@@ -37,8 +35,8 @@ std::pair<double, std::string> unitOfAngles(const SampleTable& table, const std:
     if (stated != AngleUnit::unstated) return result(stated, "");
     double polar = 0, around = 0;
     for (const TableRow& row : table.rows)
-        for (std::size_t k = 0; k < Columns::angleCount; ++k) {
-            const bool isPolar = k == Columns::thetaI || k == Columns::thetaO;
+        for (std::size_t k = 0; k < TableColumns::angleCount; ++k) {
+            const bool isPolar = k == TableColumns::thetaI || k == TableColumns::thetaO;
             double& largest = isPolar ? polar : around;
             largest = std::max(largest, std::fabs(row.angles[k]));
         }
@@ -55,9 +53,9 @@ std::pair<double, std::string> unitOfAngles(const SampleTable& table, const std:
 /// Refuses angles past the horizon, and azimuths past two turns.
 void checkAngles(const SampleTable& table, const std::string& where, double unit) {
     for (const TableRow& row : table.rows)
-        for (std::size_t k = 0; k < Columns::angleCount; ++k) {
+        for (std::size_t k = 0; k < TableColumns::angleCount; ++k) {
             const bool azimuthal =
-                k == Columns::phiI || k == Columns::phiO || k == Columns::relative;
+                k == TableColumns::phiI || k == TableColumns::phiO || k == TableColumns::relative;
             const double most = azimuthal ? 4 * pi : pi / 2;
             if (std::fabs(row.angles[k]) * unit <= most + 1e-3) continue;
             throw Row{where, "line", row.line}.error(fmt::format(
@@ -67,20 +65,20 @@ void checkAngles(const SampleTable& table, const std::string& where, double unit
 }
 
 /// Signed viewing angles without azimuth.
-bool signedInPlane(const Columns& columns) {
-    return !columns.hasVectors() && !columns.angles[Columns::phiO] &&
-           !columns.angles[Columns::relative];
+bool signedInPlane(const TableColumns& columns) {
+    return !columns.hasVectors() && !columns.angles[TableColumns::phiO] &&
+           !columns.angles[TableColumns::relative];
 }
 
 /// The viewing angle in the plane of incidence, above 0 on the side that is taken for the mirror
 /// direction's; NaN out of that plane.
-double inPlaneAngle(const TableRow& row, const Columns& columns, double unit) {
-    const double out = row.angles[Columns::thetaO] * unit;
-    const double across = std::cos(row.angles[Columns::relative] * unit);
-    if (std::fabs(row.angles[Columns::outOfPlane] * unit) > radians(1) ||
+double inPlaneAngle(const TableRow& row, const TableColumns& columns, double unit) {
+    const double out = row.angles[TableColumns::thetaO] * unit;
+    const double across = std::cos(row.angles[TableColumns::relative] * unit);
+    if (std::fabs(row.angles[TableColumns::outOfPlane] * unit) > radians(1) ||
         std::fabs(across) < std::cos(radians(2)))
         return std::numeric_limits<double>::quiet_NaN();
-    return columns.angles[Columns::relative] && across > 0 ? -out : out;
+    return columns.angles[TableColumns::relative] && across > 0 ? -out : out;
 }
 
 /// Means of the samples within 10 degrees of equal angles, on the side of the mirror direction and
@@ -88,7 +86,7 @@ double inPlaneAngle(const TableRow& row, const Columns& columns, double unit) {
 std::pair<double, double> bothSides(const SampleTable& table, double unit) {
     double sums[2] = {0, 0}, counts[2] = {0, 0};
     for (const TableRow& row : table.rows) {
-        const double in = row.angles[Columns::thetaI] * unit;
+        const double in = row.angles[TableColumns::thetaI] * unit;
         const double out = inPlaneAngle(row, table.columns, unit);
         if (std::fabs(in) < radians(4) || std::isnan(out)) continue;
         for (int side = 0; side < 2; ++side) {
@@ -102,7 +100,7 @@ std::pair<double, double> bothSides(const SampleTable& table, double unit) {
         }
     }
     // Samples on the side of the light alone do not contradict an azimuth.
-    if (counts[0] == 0 && table.columns.angles[Columns::relative]) return {0, 0};
+    if (counts[0] == 0 && table.columns.angles[TableColumns::relative]) return {0, 0};
     const auto mean = [&](int side) { return counts[side] > 0 ? sums[side] / counts[side] : 0; };
     return {mean(0), mean(1)};
 }
@@ -110,7 +108,7 @@ std::pair<double, double> bothSides(const SampleTable& table, double unit) {
 /// Refuses samples that are brighter on the side of the light, unless an option states the side.
 void checkSides(const SampleTable& table, const std::string& where, double unit,
                 const CsvOptions& options) {
-    const bool relative = table.columns.angles[Columns::relative].has_value();
+    const bool relative = table.columns.angles[TableColumns::relative].has_value();
     if (relative ? options.azimuth != CsvOptions::Azimuth::automatic
                  : options.forward != CsvOptions::Forward::automatic)
         return;
@@ -126,7 +124,7 @@ void checkSides(const SampleTable& table, const std::string& where, double unit,
 
 DirectionPair pairOf(const TableRow& row, const SampleTable& table, double unit, bool plus,
                      const CsvOptions& options, const Row& at) {
-    const Columns& columns = table.columns;
+    const TableColumns& columns = table.columns;
     if (columns.hasVectors()) {
         const auto unitVector = [&](std::size_t from) {
             Direction d{row.vectors[from], row.vectors[from + 1], row.vectors[from + 2]};
@@ -138,22 +136,24 @@ DirectionPair pairOf(const TableRow& row, const SampleTable& table, double unit,
         return {unitVector(0), unitVector(3)};
     }
     const auto angle = [&](std::size_t k) { return row.angles[k] * unit; };
-    const double phiI = angle(Columns::phiI);
-    const Direction wi = directionFromAngles(angle(Columns::thetaI), phiI);
+    const double phiI = angle(TableColumns::phiI);
+    const Direction wi = directionFromAngles(angle(TableColumns::thetaI), phiI);
     if (!signedInPlane(columns)) {
         const double offset = options.azimuth == CsvOptions::Azimuth::mirror ? pi : 0;
-        const double phiO = columns.angles[Columns::relative]
-                                ? phiI + angle(Columns::relative) + offset
-                                : angle(Columns::phiO);
-        return {wi, directionFromAngles(angle(Columns::thetaO), phiO)};
+        const double phiO = columns.angles[TableColumns::relative]
+                                ? phiI + angle(TableColumns::relative) + offset
+                                : angle(TableColumns::phiO);
+        return {wi, directionFromAngles(angle(TableColumns::thetaO), phiO)};
     }
     // In the frame whose plane of incidence is the xz plane, the light at +theta_i.
-    const double out = angle(Columns::thetaO) * (plus ? -1 : 1), off = angle(Columns::outOfPlane);
+    const double out = angle(TableColumns::thetaO) * (plus ? -1 : 1),
+                 off = angle(TableColumns::outOfPlane);
     const Direction wo{std::sin(out) * std::cos(off), std::sin(off), std::cos(out) * std::cos(off)};
     return {wi, rotateAboutZ(wo, phiI)};
 }
 
-void addCsvSigmas(const TableRow& row, const Columns& columns, const Row& at, Samples& samples) {
+void addCsvSigmas(const TableRow& row, const TableColumns& columns, const Row& at,
+                  Samples& samples) {
     for (std::size_t c = 0; !row.sigmas.empty() && c < row.values.size(); ++c) {
         double sigma = row.sigmas[row.sigmas.size() == 1 ? 0 : c];
         if (columns.percent) sigma *= std::fabs(row.values[c]) / 100;
@@ -197,7 +197,8 @@ void addSamples(const SampleTable& table, const std::string& where, const CsvOpt
     checkAngles(table, where, unit);
     const bool inPlane = signedInPlane(table.columns);
     const bool plus = options.forward != CsvOptions::Forward::minus;
-    if (inPlane || table.columns.angles[Columns::relative]) checkSides(table, where, unit, options);
+    if (inPlane || table.columns.angles[TableColumns::relative])
+        checkSides(table, where, unit, options);
     if (inPlane)
         samples.facts.emplace_back("mirror_direction",
                                    plus ? "theta_o = +theta_i" : "theta_o = -theta_i");

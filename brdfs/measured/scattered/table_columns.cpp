@@ -176,7 +176,7 @@ void separateUnit(ColumnName& name, Words known) {
     }
 }
 
-Words angleNames(std::size_t angle) {
+Words namesOfAngle(std::size_t angle) {
     constexpr Words names[] = {thetaINames, phiINames,     thetaONames,
                                phiONames,   relativeNames, outOfPlaneNames};
     return names[angle];
@@ -185,8 +185,8 @@ Words angleNames(std::size_t angle) {
 std::optional<std::size_t> angleOf(ColumnName& name) {
     for (std::size_t k = 0; k < TableColumns::angleCount; ++k) {
         ColumnName own = name;
-        separateUnit(own, angleNames(k));
-        if (own.nanometres || !isAmong(own.word, angleNames(k))) continue;
+        separateUnit(own, namesOfAngle(k));
+        if (own.nanometres || !isAmong(own.word, namesOfAngle(k))) continue;
         name = own;
         return k;
     }

@@ -1,0 +1,21 @@
+#pragma once
+
+// Names that the statistics of fits share.
+
+#include <Eigen/Core>
+
+#include <cstddef>
+
+namespace hshfit::brdfs {
+
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+
+inline Eigen::Index at(std::size_t i) {
+    return static_cast<Eigen::Index>(i);
+}
+
+/// Rounding leaves some of 1 - leverage where a value, or a scan, alone decides.
+inline constexpr double leastFreedom = 1e-6;
+
+}  // namespace hshfit::brdfs
