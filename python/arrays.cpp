@@ -143,6 +143,14 @@ std::string pathOf(const py::object& path, const char* name) {
                                  py::str(path.get_type().attr("__name__")).cast<std::string>()));
 }
 
+std::vector<std::string> pathsOf(const py::object& paths, const char* name) {
+    const bool one = py::isinstance<py::str>(paths) || py::hasattr(paths, "__fspath__");
+    std::vector<std::string> all;
+    for (const py::handle path : one ? py::object(py::make_tuple(paths)) : paths)
+        all.push_back(pathOf(py::reinterpret_borrow<py::object>(path), name));
+    return all;
+}
+
 std::string outgoingText(const py::object& outgoing) {
     if (outgoing.is_none()) return {};
     if (py::isinstance<OutgoingSet>(outgoing)) return outgoing.cast<const OutgoingSet&>().spec();

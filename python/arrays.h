@@ -56,6 +56,8 @@ std::vector<double> numbersOf(const py::object& argument, const char* name);
 py::object fromJson(const nlohmann::ordered_json& document);
 /// A string, or a path-like object, as a string. Throws UsageError with `name`.
 std::string pathOf(const py::object& path, const char* name);
+/// The same of one, or of each of a sequence.
+std::vector<std::string> pathsOf(const py::object& paths, const char* name);
 /// An outgoing set as text: "32x32", 16, (52, 0) in degrees, an Outgoing, or None for "".
 std::string outgoingText(const py::object& outgoing);
 /// Names as a list with commas: a string as it is, or a sequence of strings.

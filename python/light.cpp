@@ -64,11 +64,7 @@ py::dict enoughOf(const Lit& lit) {
 }
 
 std::vector<std::string> specificationsOf(const py::object& specs) {
-    if (py::isinstance<py::str>(specs) || py::hasattr(specs, "__fspath__"))
-        return {pathOf(specs, "spec")};
-    std::vector<std::string> texts;
-    for (const py::handle spec : specs)
-        texts.push_back(pathOf(py::reinterpret_borrow<py::object>(spec), "spec"));
+    std::vector<std::string> texts = pathsOf(specs, "spec");
     if (texts.empty()) throw UsageError("spec: no light; catalog('lights') lists them");
     return texts;
 }

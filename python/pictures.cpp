@@ -57,15 +57,6 @@ std::vector<Value> listFrom(const py::object& values) {
     return values.cast<std::vector<Value>>();
 }
 
-std::vector<std::string> sourcesOf(const py::object& specs) {
-    std::vector<std::string> sources;
-    const bool one = py::isinstance<py::str>(specs) || py::hasattr(specs, "__fspath__");
-    const py::object each = one ? py::object(py::make_tuple(specs)) : specs;
-    for (const py::handle spec : each)
-        sources.push_back(pathOf(py::reinterpret_borrow<py::object>(spec), "specs"));
-    return sources;
-}
-
 std::optional<double> optionalNumber(const py::object& value) {
     return value.is_none() ? std::nullopt : std::optional(value.cast<double>());
 }
@@ -78,7 +69,7 @@ py::object render(const py::object& specs, const py::object& path, const py::obj
                   const py::object& exposure, int size, const py::object& samples,
                   const py::object& tolerance, const py::object& progress) {
     namespace bounds = jobs::bounds;
-    const std::vector<std::string> sources = sourcesOf(specs);
+    const std::vector<std::string> sources = pathsOf(specs, "specs");
     const std::string output = pathOf(path, "path");
     requireWithin("size", size, bounds::pictureSize);
     if (up != "y" && up != "z") throw UsageError(fmt::format("up: '{}' is neither y nor z", up));

@@ -21,14 +21,6 @@ namespace hshfit::python {
 namespace {
 
 /// One path or a sequence of them.
-std::vector<std::string> pathsOf(const py::object& paths, const char* name) {
-    const bool one = py::isinstance<py::str>(paths) || py::hasattr(paths, "__fspath__");
-    std::vector<std::string> all;
-    for (const py::handle path : one ? py::object(py::make_tuple(paths)) : paths)
-        all.push_back(pathOf(py::reinterpret_borrow<py::object>(path), name));
-    return all;
-}
-
 std::string folderOf(const py::object& folder) {
     return folder.is_none() ? std::string() : pathOf(folder, "folder");
 }
