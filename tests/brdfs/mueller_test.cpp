@@ -196,6 +196,22 @@ TEST_F(Ptfe, TheExpansionLeavesTheNoiseOfEveryMeasuredElement) {
     }
 }
 
+/// A factor changes what is in 1/sr, and no ratio of it.
+TEST_F(Ptfe, FactorsLeaveTheDegreeOfPolarisation) {
+    SKIP_WITHOUT(file("PTFE.data.csv"));
+    const auto plain = open("PTFE.data.csv", "mueller=m00/dolp"),
+               twice = open("PTFE.data.csv", "mueller=m00/dolp,scale=2");
+    const auto& before = dynamic_cast<const brdfs::Scattered&>(*plain).samples();
+    const auto& after = dynamic_cast<const brdfs::Scattered&>(*twice).samples();
+    const std::vector<std::string> names = before.channels.names();
+    ASSERT_EQ(after.values.size(), before.values.size());
+    for (std::size_t k = 0; k < before.values.size(); ++k)
+        EXPECT_EQ(after.values[k],
+                  before.values[k] * (names[k % names.size()].starts_with("m00") ? 2 : 1))
+            << names[k % names.size()];
+    EXPECT_EQ(after.census.greatest, std::ranges::max(after.values));
+}
+
 /// Every value that is read of every row, by the numbers of the rows.
 TEST_F(Ptfe, MeasuredElementsAreThoseOfTheFile) {
     SKIP_WITHOUT(file("PTFE.data.csv"));

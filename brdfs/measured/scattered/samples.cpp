@@ -24,10 +24,17 @@ void Samples::count(std::span<const double> f, const Row& row) {
 }
 
 void Samples::scale(double factor) {
-    for (double& value : values) value *= factor;
-    for (double& sigma : sigmas) sigma *= factor;
-    census.least *= factor;
-    census.greatest *= factor;
+    // The degree of polarisation is a ratio of what is scaled.
+    const std::vector<std::string> names = channels.names();
+    const auto scaleEach = [&](std::vector<double>& numbers) {
+        for (std::size_t k = 0; k < numbers.size(); ++k)
+            if (!names[k % names.size()].starts_with("dolp")) numbers[k] *= factor;
+    };
+    scaleEach(values);
+    scaleEach(sigmas);
+    const auto [least, greatest] = std::ranges::minmax_element(values);
+    census.least = *least;
+    census.greatest = *greatest;
 }
 
 void Samples::leaveOut(std::span<const double> f, const Row& row) {

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cmath>
 
 namespace hshfit::inline pictures {
 
@@ -12,7 +12,9 @@ std::optional<std::string> poorReason(const std::optional<double>& captured,
                                       const std::optional<PictureError>& error,
                                       const PoorBounds& bounds) {
     if (captured && !(*captured >= bounds.captured))
-        return fmt::format("{} of the energy is captured", percent(std::max(*captured, 0.0)));
+        return *captured > 0 ? fmt::format("{} of the energy is captured", percent(*captured))
+                             : fmt::format("the error is {} of f (relative L2)",
+                                           percent(std::sqrt(1 - *captured)));
     if (!error) return std::nullopt;
     const bool dips = error->dip.value >= error->peak.value;
     const SeenDifference& extremum = dips ? error->dip : error->peak;

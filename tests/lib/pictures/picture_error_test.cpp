@@ -282,6 +282,8 @@ TEST(Poor, ByEachOfItsBoundsWithOneReason) {
                             .dip = {.value = 0.09},
                             .peak = {.value = 0.08}};
     EXPECT_FALSE(poorReason(0.91, good));
+    // 1 - (relative error)^2 is captured: an error of 1.5 of f captures nothing.
+    EXPECT_EQ(poorReason(1 - 1.5 * 1.5, good), "the error is 150 % of f (relative L2)");
     EXPECT_FALSE(poorReason({}, good));
     EXPECT_FALSE(poorReason({}, {}));
     EXPECT_NE(poorReason(0.89, good)->find("89 % of the energy"), std::string::npos);
