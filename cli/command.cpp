@@ -37,6 +37,11 @@ void addCommand(CLI::App& app, Globals& globals, const Command& row) {
     command.add_flag("--quiet", globals.quiet, "No progress and no notes on standard error");
     command.add_option("--threads", globals.threads, "Threads to use; 0: all cores")
         ->check(CLI::Range(0, 4096));
+    if (!row.add) {
+        command.allow_extras();
+        command.callback([&row] { throw UsageError(notBuilt(row.name, *row.wing)); });
+        return;
+    }
     row.add(command, globals);
     addForce(command, globals);
     stateRanges(command);

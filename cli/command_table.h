@@ -2,6 +2,9 @@
 
 #include "command_rows.h"
 
+#include <hshfit/wings.h>
+
+#include <optional>
 #include <span>
 
 namespace CLI {
@@ -20,10 +23,11 @@ struct Command {
     const char* help;     ///< one line
     const char* file;     ///< the source in this folder
     const char* example;  ///< runs in a folder after the examples that write its inputs
-    /// Adds the options and the function that runs the command.
+    /// Adds the options and the function that runs the command; null in a wing that is not built.
     void (*add)(CLI::App& command, Globals& globals);
     /// The rows of its options; null where `add` states each.
     OptionTables (*options)() = nullptr;
+    std::optional<Wing> wing = std::nullopt;  ///< without one it is of the core
 };
 
 /// Every command, in the order in which messages list them.

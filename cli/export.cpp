@@ -8,6 +8,7 @@
 #include <hshfit/filtered_maps/filtered_sidecar.h>
 #include <hshfit/gpu/error_split.h>
 #include <hshfit/pages/picture_error_json.h>
+#include <hshfit/wings.h>
 
 #include <jobs/common/many.h>
 #include <jobs/exports/export.h>
@@ -283,7 +284,8 @@ void runMaterials(const ExportArguments& arguments, Globals& globals) {
 }
 
 std::string answerText(const Json& answer) {
-    if (isMapDocument(answer)) return mapDocumentText(answer);
+    if constexpr (isBuilt(Wing::maps))
+        if (isMapDocument(answer)) return mapDocumentText(answer);
     const Json picture = answer["fit_error"].value("picture", Json());
     return text(answer) +
            (picture.is_null() ? "" : "picture: " + summaryOf(pictureErrorFrom(picture)) + "\n") +
@@ -293,8 +295,12 @@ std::string answerText(const Json& answer) {
 /// The answer for a coefficient file or a map of materials.
 Json exported(const ExportArguments& arguments, const std::string& input, const std::string& folder,
               const jobs::Listener& listener) {
-    if (isMap(input))
-        return mapDocument(jobs::exportMap(input, folder, mapOptions(arguments), listener), folder);
+    if (isMap(input)) {
+        if constexpr (isBuilt(Wing::maps))
+            return mapDocument(jobs::exportMap(input, folder, mapOptions(arguments), listener),
+                               folder);
+        throw UsageError(notBuilt(input, Wing::maps));
+    }
     const jobs::Exported made =
         jobs::exportCoefficients(input, folder, arguments.options, listener);
     if (made.poor) listener.say(made.poor->line());

@@ -144,7 +144,11 @@ Page programSections(const CLI::App& program) {
     for (const char* group : groupNames()) {
         addHeading(page, group);
         for (const Command& command : commands())
-            if (command.group == std::string_view(group)) addRow(page, command.name, command.help);
+            if (command.group == std::string_view(group))
+                addRow(page, command.name,
+                       command.add ? std::string(command.help)
+                                   : fmt::format("(not built: wing {}) {}", nameOf(*command.wing),
+                                                 command.help));
     }
     addHeading(page, "Topics");
     for (const Topic& topic : topics()) addRow(page, topic.name, topic.help);

@@ -6,6 +6,7 @@
 #include <hshfit/gpu/containers/targets.h>
 #include <hshfit/representation/forms/form.h>
 #include <hshfit/tradeoff/sweep.h>
+#include <hshfit/wings.h>
 
 #include <brdfs/repair.h>
 #include <brdfs/rows/spec.h>
@@ -48,6 +49,11 @@ bool parses(Parse parse, const std::string& word) {
     }
 }
 
+bool isConstraint(const std::string& word) {
+    if constexpr (isBuilt(Wing::studies)) return parses(tradeoff::parseConstraint, word);
+    return false;
+}
+
 /// A word that options with lists know and that is no BRDF.
 bool isListed(const std::string& word) {
     const auto isNamed = [&](const auto& row) { return row.name == word; };
@@ -55,8 +61,7 @@ bool isListed(const std::string& word) {
            std::ranges::any_of(metricCatalog(), isNamed) ||
            std::ranges::any_of(gpu::targets(), isNamed) ||
            std::ranges::any_of(brdfs::repairs(), isNamed) || parses(parseKind, word) ||
-           parses(parsePrecision, word) || parses(parseWindow, word) ||
-           parses(tradeoff::parseConstraint, word);
+           parses(parsePrecision, word) || parses(parseWindow, word) || isConstraint(word);
 }
 
 /// Whether `word` goes on with the list that ends with `before`.

@@ -13,7 +13,7 @@ set(HSHFIT_BRDFS_HEADERS ${CMAKE_INSTALL_INCLUDEDIR}/hshfit-brdfs)
 # hshfit::NAME.
 function(hshfit_install_target target name)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
-  if(HSHFIT_INSTALL)
+  if(HSHFIT_DEVELOPMENT)
     install(TARGETS ${target} EXPORT hshfit_targets
             ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
   endif()
@@ -22,7 +22,7 @@ endfunction()
 # hshfit_install_headers(FOLDER PRIVATE…): the headers of this folder without PRIVATE and without
 # those of its subfolders, into FOLDER of the headers.
 function(hshfit_install_headers folder)
-  if(NOT HSHFIT_INSTALL)
+  if(NOT HSHFIT_DEVELOPMENT)
     return()
   endif()
   set(private)
@@ -39,7 +39,7 @@ endfunction()
 # LIBRARY needs only those before it.
 function(hshfit_pkgconfig module)
   cmake_parse_arguments(ARG "" "" "REQUIRES;LIBS;CFLAGS" ${ARGN})
-  if(NOT HSHFIT_INSTALL)
+  if(NOT HSHFIT_DEVELOPMENT)
     return()
   endif()
   set(libs)
@@ -60,7 +60,7 @@ endfunction()
 
 # hshfit_install_package(): the files for find_package, after all targets are known.
 function(hshfit_install_package)
-  if(NOT HSHFIT_INSTALL)
+  if(NOT HSHFIT_DEVELOPMENT)
     return()
   endif()
   get_property(HSHFIT_COMPONENTS GLOBAL PROPERTY hshfit_components)

@@ -3,41 +3,8 @@
 # step states what has to hold of its answer, and the demonstration ends where it does not.
 set -eu
 cd "$(dirname "$0")/.."
-hshfit=build/hshfit
-mkdir -p out
-
-# Runs the program after printing the command line; its answer is in out/answer.txt, too.
-show() {
-    echo "\$ hshfit $*"
-    code=0
-    "$hshfit" "$@" >out/answer.txt || code=$?
-    cat out/answer.txt
-    return $code
-}
-
-# number PATTERN [FILE]: the first number in the last answer, or in FILE, that stands at the @.
-number() {
-    place=$(echo "$1" | sed 's/@/\\([-+0-9.e]*[0-9]\\)/')
-    sed -n "s/^\(.*[^-+0-9.e]\)\{0,1\}$place.*/\2/p" "${2:-out/answer.txt}" | head -n 1
-}
-
-# holds CLAIM CONDITION: ends the demonstration unless the condition, of awk, is true.
-holds() {
-    awk "function near(a, b, share) { return a - b <= share * b && b - a <= share * b }
-         function within(a, low, high) { return a >= low && a <= high }
-         BEGIN { exit !($2) }" 2>/dev/null ||
-        { echo "demo: this does not hold: $1: $2" >&2; exit 1; }
-    echo "  holds: $1"
-}
-
-# finding TEXT COMMAND…: a command that is known to end with exit code 4, and its meaning.
-finding() {
-    text=$1
-    shift
-    show "$@" || true
-    [ "$code" = 4 ] || { echo "demo: expected exit code 4, not $code" >&2; exit 1; }
-    echo "  exit code 4, and rightly so: $text"
-}
+# shellcheck source=/dev/null  # read by itself
+. examples/demo_steps.sh
 
 phong=phong:exponent=22
 ward=ward:ax=0.2,ay=0.5
@@ -104,15 +71,7 @@ holds "the roughness is that of the data, whose model has another distribution" 
     "near($(number 'beckmann.alpha *@'), 0.3, 0.1)"
 
 echo
-echo "7. The least that a scene needs: matte materials under one sky; a mirror has no plan."
-finding "no form of this order holds a mirror." \
-    plan examples/scenes/matte_room.json -o out/plan --force
-holds "each other material is within the error that the scene allows" \
-    "$(number 'plaster:.* error @ of') <= 0.02 && $(number 'boards:.* error @ of') <= 0.02 &&
-     $(number 'chair:.* error @ of') <= 0.02"
-
-echo
-echo "8. Light: a sky as coefficients, turned, and as the nine numbers that engines take."
+echo "7. Light: a sky as coefficients, turned, and as the nine numbers that engines take."
 show light sky:type=12,elevation=40,radiance=1 -o out/sky.json --force
 holds "10 bands have most of the sky" "within($(number '@ of the energy captured'), 0.9, 1)"
 show rotate out/sky.json -o out/sky_turned.json --axis 0,1,0,30 --force
@@ -123,7 +82,7 @@ holds "nine numbers are near the irradiance of every normal" \
     "$(number 'order 3 .* error at most @ %') < 5"
 
 echo
-echo "9. Directions drawn after a material, with the efficiency by elevation, and a scene by them."
+echo "8. Directions drawn after a material, with the efficiency by elevation."
 show sample ggx:alpha=.2,F0=.9 --outgoing 45,0 --count 1000 -o out/samples.csv --force
 albedo=$(awk '$1 == 45.0 { print $2, $3, $4 }' out/answer.txt)
 holds "samples and quadrature have the same albedo, within five standard errors" \
@@ -133,34 +92,6 @@ show sample out/path_tracer/phong.hsh.json --method stored --count 0
 albedo=$(awk '$1 == 45.0 { print $2, $3, $4 }' out/answer.txt)
 holds "so do samples drawn as the shader draws them" \
     "$(echo "$albedo" | awk '{ print "near(" $2 ", " $1 ", 5 * " $4 + $3 " / " $1 ")" }')"
-show illuminate examples/scenes/box.json -o out/box --samples 16 --force
-by_paths=$(number 'mean radiance @,')
-show illuminate examples/scenes/box.json -o out/box_cache --method radiance-cache --rays 500 \
-    --samples 4 --force
-holds "paths and the radiance cache have the same mean, within 2 %" \
-    "near($(number 'mean radiance @,'), $by_paths, 0.02)"
-holds "it is below the radiance of the lamp" "within($by_paths, 0, 17)"
-show transfer examples/scenes/ball_and_wall.json -o out/ball --rays 64 --force
-holds "each pass of reflections has less light than the one before" \
-    "$(sed -n 's/^  energy by pass: //p' out/answer.txt |
-        awk '{ for (i = 2; i <= NF; ++i) printf "%s > %s && ", $(i - 1), $i; print $NF " > 0" }')"
-
-echo
-echo "10. Maps of a coin as a texture of coefficients, and a texel of it."
-show svbrdf examples/maps/coin.json -o out/coin --form low-rank --force
-holds "the error of the form is below 1 % of every texel" \
-    "$(number 'level  0: .* % mean, @ % at most') < 1"
-show eval out/coin/material.json:x=32,y=32 --wi 30,180 --wo 20,0
-holds "the texel is copper: red before green before blue" \
-    "$(awk '{ f[$1] = $2 } END { print f["R"], ">", f["G"], "&&", f["G"], ">", f["B"], "&&",
-                                       f["B"], "> 0" }' out/answer.txt)"
-
-echo
-echo "11. Many materials: a manifest of commands, and one table of all answers."
-show batch examples/batch/materials.jsonl -o out/batch
-show batch examples/batch/materials.jsonl -o out/batch --merge
-holds "no item failed, and none is missing" \
-    "$(number '@ failed') == 0 && $(number '@ missing') == 0"
 
 echo
 echo "Captured energy of f cos with order 7 (49 slots) and the files it went to:"
@@ -179,6 +110,6 @@ done
 echo
 echo "Open out/report_cosine/report.html, and report_phong and report_ward beside it;"
 echo "the fit is out/fit_beckmann/fit.json, with comparison.html beside it;"
-echo "the plan is out/plan/plan.html; the table of the batch is out/batch/index.html;"
 echo "the viewer is out/export/ward_cosine_viewer.html;"
 echo "the coefficients are out/*.json and out/*.exr: build/hshfit info out/ward_cosine.json"
+echo "./run demo all goes on with maps, scenes, plans and batches."

@@ -96,8 +96,9 @@ def check(old, pattern):
     PROGRAM.write_text(f'#!/bin/sh\nexec /usr/bin/python3 "{script}" --shim "$@"\n')
     PROGRAM.chmod(0o755)
     try:
-        subprocess.run([TOP / "examples/demo.sh"], env=environment, check=False,
-                       stdout=subprocess.DEVNULL)
+        for steps in ("demo.sh", "demo_wings.sh"):
+            subprocess.run([TOP / "examples" / steps], env=environment, check=False,
+                           stdout=subprocess.DEVNULL)
         subprocess.run(["ctest", "--preset", "release", "-R", pattern], cwd=TOP, env=environment,
                        check=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     finally:

@@ -3,6 +3,7 @@
 #include <brdfs/presets/preset_collection.h>
 #include <hshfit/error.h>
 #include <hshfit/material_library/library_file.h>
+#include <hshfit/wings.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -33,9 +34,7 @@ constexpr std::size_t shownNames = 8;
         near.empty() ? std::string() : fmt::format(" (did you mean {}?)", fmt::join(near, ", "))));
 }
 
-}  // namespace
-
-std::unique_ptr<Brdf> openLibraryMaterial(const std::string& path, std::string_view name) {
+std::unique_ptr<Brdf> openMaterialOf(const std::string& path, std::string_view name) {
     const material_library::Library library = material_library::readLibrary(path);
     const material_library::Material* material = nullptr;
     if (name.empty() && library.materials.size() == 1)
@@ -45,6 +44,13 @@ std::unique_ptr<Brdf> openLibraryMaterial(const std::string& path, std::string_v
     if (!material) refuseName(path, name, library);
     return material_library::open(library, *material,
                                   name.empty() ? path : fmt::format("{}:{}", path, name));
+}
+
+}  // namespace
+
+std::unique_ptr<Brdf> openLibraryMaterial(const std::string& path, std::string_view name) {
+    if constexpr (isBuilt(Wing::library)) return openMaterialOf(path, name);
+    throw UsageError(notBuilt(path, Wing::library));
 }
 
 const Format& materialLibraryFormat() {

@@ -14,6 +14,7 @@
 #include <hshfit/material_maps/material_map.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/specification/parameters.h>
+#include <hshfit/wings.h>
 
 #include "filtered_texel_brdf.h"
 
@@ -34,17 +35,12 @@ std::unique_ptr<Brdf> seenAsRgb(std::unique_ptr<Brdf> brdf, bool rgb) {
     return asRgb(std::move(brdf));
 }
 
-/// A texel of a material map, "FILE:x=3,y=5,level=0"; null where SPEC is none.
-std::unique_ptr<Brdf> openTexel(const std::string& spec) {
-    const std::string path(pathIn(spec));
-    const bool filtered = !path.empty() && isFilteredSidecar(path);
-    if (path.empty() || !(filtered || isMapSidecar(path))) return nullptr;
+std::unique_ptr<Brdf> openTexelOf(const std::string& path, bool filtered, const std::string& rest) {
     constexpr double most = 1 << 20;
     const Parameter parameters[] = {
         {.name = "x", .help = "column", .fallback = 0, .max = most},
         {.name = "y", .help = "row, from the top", .fallback = 0, .max = most},
         {.name = "level", .help = "0 is the full size", .fallback = 0, .max = 30}};
-    const std::string rest = spec.substr(path.size());
     const Parameters texel =
         parseParameters(path, parameters, rest.empty() ? rest : rest.substr(1));
     const auto index = [&](std::string_view name) {
@@ -67,6 +63,15 @@ std::unique_ptr<Brdf> openTexel(const std::string& spec) {
     Coefficients coefficients = map.coefficients(index("level"), index("x"), index("y"));
     map.checkIntact();
     return std::make_unique<Reconstruction>(std::move(coefficients));
+}
+
+/// A texel of a material map, "FILE:x=3,y=5,level=0"; null where SPEC is none.
+std::unique_ptr<Brdf> openTexel(const std::string& spec) {
+    const std::string path(pathIn(spec));
+    const bool filtered = !path.empty() && isFilteredSidecar(path);
+    if (path.empty() || !(filtered || isMapSidecar(path))) return nullptr;
+    if constexpr (isBuilt(Wing::maps)) return openTexelOf(path, filtered, spec.substr(path.size()));
+    throw UsageError(notBuilt(path, Wing::maps));
 }
 
 std::unique_ptr<Brdf> checked(std::unique_ptr<Brdf> brdf, Sides sides) {

@@ -39,7 +39,7 @@ install)
     cmake --install "$build" --prefix "$work/first" >"$work/log"
     mv "$work/first" "$prefix"
     ;;
-# After `./run demo` the target hshfit is built and nothing else: a folder with the files of this
+# After `./run demo all` the target hshfit is built and nothing else: a folder with the files of this
 # target, those of the configuration and the scripts of the installation installs all but Python's.
 demo)
     demo=$work/demo
@@ -61,7 +61,7 @@ demo)
     (cd "$prefix" && find . -type f ! -path '*/dist-packages/*' ! -path './bin/hshfit-mpi') | sort \
         >"$work/list"
     (cd "$work/of_demo" && find . -type f) | sort | diff "$work/list" - ||
-        fail "the installation after ./run demo differs from the whole one in the files above"
+        fail "the installation after ./run demo all differs from the whole one in the files above"
     ;;
 # Installed headers are the list of public ones and nothing else, and compile with warnings.
 headers)

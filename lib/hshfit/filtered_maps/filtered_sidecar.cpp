@@ -15,7 +15,6 @@
 namespace hshfit::inline filtered_maps {
 namespace {
 
-constexpr const char *format = "hshfit-filtered-map", *exportFormat = "hshfit-gpu-filtered-map";
 constexpr std::size_t mostBytes = std::size_t{1} << 28;
 constexpr int mostSide = 1 << 20;
 
@@ -94,7 +93,7 @@ std::string toText(const FilteredSidecar& s) {
         }
         terms.push_back({{"weights", weights}, {"scales", scales}});
     }
-    nlohmann::ordered_json json = {{"format", format},
+    nlohmann::ordered_json json = {{"format", filteredMapFormat},
                                    {"version", 1},
                                    {"form", s.form},
                                    {"order", s.layout.order},
@@ -123,8 +122,8 @@ FilteredSidecar readFilteredSidecar(const std::string& file) {
     const std::string_view text(reinterpret_cast<const char*>(mapped.data()), mapped.size());
     const nlohmann::json json = parseJson(text, file, 8);
     const JsonFields root(json, "", file);
-    const bool exported = root.word("format") == exportFormat;
-    if (!exported && root.word("format") != format)
+    const bool exported = root.word("format") == filteredMapExportFormat;
+    if (!exported && root.word("format") != filteredMapFormat)
         root.fail("is not hshfit-filtered-map", "format");
     if (root.integer("version", 1, 1 << 20) != 1)
         root.fail("is newer than this program", "version");
@@ -170,11 +169,6 @@ FilteredSidecar readFilteredSidecar(const std::string& file) {
     s.source = root.word("source");
     s.generator = root.word("generator");
     return s;
-}
-
-bool isFilteredSidecar(const std::string& file) {
-    const std::string found = jsonFormatOf(file);
-    return found == format || found == exportFormat;
 }
 
 }  // namespace hshfit::inline filtered_maps

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <hshfit/brdf/channels.h>
+#include <hshfit/files/json_format.h>
 #include <hshfit/gpu/texels.h>
 #include <hshfit/material_maps/texel_source.h>
 #include <hshfit/normal_filtering/lobe_table.h>
@@ -11,6 +12,9 @@
 #include <vector>
 
 namespace hshfit::inline filtered_maps {
+
+inline constexpr const char *filteredMapFormat = "hshfit-filtered-map",
+                            *filteredMapExportFormat = "hshfit-gpu-filtered-map";
 
 /// A parameter of the lobe that varies from texel to texel: the values at whole numbers of
 /// LobePlace, rising; linear between them.
@@ -64,6 +68,9 @@ std::string toText(const FilteredSidecar& sidecar);
 FilteredSidecar readFilteredSidecar(const std::string& file);
 /// Whether a file is one: of a map, or of an export of a map, which has the same keys beside its
 /// own.
-bool isFilteredSidecar(const std::string& file);
+inline bool isFilteredSidecar(const std::string& file) {
+    const std::string found = jsonFormatOf(file);
+    return found == filteredMapFormat || found == filteredMapExportFormat;
+}
 
 }  // namespace hshfit::inline filtered_maps

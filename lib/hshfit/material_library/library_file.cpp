@@ -309,12 +309,6 @@ std::vector<Measured> readMeasured(const JsonFields& root, const Reader& reader)
 
 }  // namespace
 
-bool looksLikeLibrary(std::span<const unsigned char> head) {
-    const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
-    return text.starts_with(TensorFile::magic) &&
-           text.substr(0, 64).find(headField) != std::string_view::npos;
-}
-
 void writeLibrary(const Library& library, AtomicFile& file) {
     const std::string head = headOf(library);
     const Joined all = joinedOf(library);

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <hshfit/files/atomic_file.h>
+#include <hshfit/files/tensor_file.h>
 #include <hshfit/material_library/library.h>
 
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace hshfit::material_library {
 
@@ -14,7 +16,11 @@ namespace hshfit::material_library {
 inline constexpr const char* headField = "hshfit_library";
 
 /// Whether the first bytes of a file are those of a library.
-bool looksLikeLibrary(std::span<const unsigned char> head);
+inline bool looksLikeLibrary(std::span<const unsigned char> head) {
+    const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
+    return text.starts_with(TensorFile::magic) &&
+           text.substr(0, 64).find(headField) != std::string_view::npos;
+}
 
 /// Without `measured` if that is empty. Not committed.
 void writeLibrary(const Library& library, AtomicFile& file);

@@ -13,7 +13,6 @@
 namespace hshfit::inline material_maps {
 namespace {
 
-constexpr std::string_view format = "hshfit-material-map", exportFormat = "hshfit-gpu-map";
 constexpr std::size_t mostBytes = std::size_t{1} << 30;
 
 template <class T>
@@ -58,7 +57,7 @@ std::string toText(const MapSidecar& s) {
     for (const LevelSize& level : s.levels)
         levels.push_back({{"width", level.width}, {"height", level.height}});
     nlohmann::ordered_json json = {
-        {"format", format},
+        {"format", materialMapFormat},
         {"version", 1},
         {"form", s.form},
         {"basis", {{"name", s.basis}, {"order", s.order}, {"index", "l*(l+1)+m"}}},
@@ -89,8 +88,8 @@ MapSidecar readMapSidecar(const std::string& file) {
 MapSidecar parseMapSidecar(std::string_view text, const std::string& file) {
     const nlohmann::json json = parseJson(text, file, 8);
     const JsonFields root(json, "", file);
-    const bool exported = root.word("format") == exportFormat;
-    if (!exported && root.word("format") != format)
+    const bool exported = root.word("format") == materialMapExportFormat;
+    if (!exported && root.word("format") != materialMapFormat)
         root.fail("is not hshfit-material-map", "format");
     if (root.integer("version", 1, 1 << 20) != 1)
         root.fail("is newer than this program", "version");
@@ -144,11 +143,6 @@ MapSidecar parseMapSidecar(std::string_view text, const std::string& file) {
     s.source = root.word("source");
     s.generator = root.word("generator");
     return s;
-}
-
-bool isMapSidecar(const std::string& file) {
-    const std::string found = jsonFormatOf(file);
-    return found == format || found == exportFormat;
 }
 
 std::string exportedTexture(const JsonFields& sidecar, std::string_view role,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <hshfit/coefficients/coefficients.h>
+#include <hshfit/files/json_format.h>
 #include <hshfit/gpu/texels.h>
 #include <hshfit/material_maps/map_writer.h>
 #include <hshfit/material_maps/texel_layout.h>
@@ -14,6 +15,9 @@ class JsonFields;
 }
 
 namespace hshfit::inline material_maps {
+
+inline constexpr std::string_view materialMapFormat = "hshfit-material-map",
+                                  materialMapExportFormat = "hshfit-gpu-map";
 
 /// A map of materials as its JSON file states it, "hshfit-material-map"
 /// (docs/explanation/svbrdf.md).
@@ -50,7 +54,10 @@ MapSidecar readMapSidecar(const std::string& file);
 MapSidecar parseMapSidecar(std::string_view text, const std::string& file);
 /// Whether a file is one: of a map, or of an export of a map, which has the same keys beside its
 /// own.
-bool isMapSidecar(const std::string& file);
+inline bool isMapSidecar(const std::string& file) {
+    const std::string found = jsonFormatOf(file);
+    return found == materialMapFormat || found == materialMapExportFormat;
+}
 /// The KTX 2.0 file of a role that the sidecar `file` of an export lists. Throws InputError where
 /// it lists none.
 std::string exportedTexture(const JsonFields& sidecar, std::string_view role,
