@@ -6,6 +6,7 @@
 #include <brdfs/analytic/parameters.h>
 #include <brdfs/analytic/sheen_albedo.h>
 #include <brdfs/analytic/term_brdf.h>
+#include <brdfs/analytic/thin_film.h>
 #include <hshfit/sampling/axis_lobes.h>
 #include <hshfit/sampling/visible_normals.h>
 
@@ -28,6 +29,8 @@ struct GltfPbrShape {
     N sheen, sheenPeak;  ///< whether there is sheen; the largest channel of its colour
     CharlieCurve<N> curve;
     std::array<N, SheenAlbedoTable::Row().size()> albedo;
+    std::array<N, 3> f0Of;  ///< f0 of each channel, under a film
+    FilmShape<N> film;
 };
 
 }  // namespace hshfit::brdfs
@@ -108,7 +111,7 @@ public:
         return heights;
     }
     double defaultTolerance() const override {
-        return shape_.sheen > 0 ? 1e-5 : ShapedBrdf::defaultTolerance();
+        return shape_.sheen > 0 || shape_.film.weight > 0 ? 1e-5 : ShapedBrdf::defaultTolerance();
     }
 };
 
@@ -125,8 +128,9 @@ FacetText textOf(const Parameters& p) {
 
 std::unique_ptr<Brdf> make(const Parameters& p) {
     const GltfPbrShape<double> shape = shapeOf(p);
-    // A coat is a second lobe, and sheen has a peak of its own.
-    if (shape.clearcoat > 0 || shape.sheen > 0) return std::make_unique<GltfPbr>(p);
+    // A coat is a second lobe, sheen has a peak of its own, and a film colours the facets.
+    if (shape.clearcoat > 0 || shape.sheen > 0 || shape.film.weight > 0)
+        return std::make_unique<GltfPbr>(p);
     const RoughnessOf<double>& r = shape.base.r;
     return std::make_unique<WithFacetNormals<GltfPbr>>(
         FacetNormals{.density = ggxNormals(r.ax, r.ay),
@@ -134,7 +138,7 @@ std::unique_ptr<Brdf> make(const Parameters& p) {
                      .widthY = r.ay,
                      .turn = p.number("anisotropyRotation"),
                      .weights = channelWeights<GltfPbrFormula>(p),
-                     .ofLobe = {false, true, true, false, false},
+                     .ofLobe = {false, true, true, false, false, false, false, false},
                      .text = textOf(p)},
         p);
 }
@@ -196,6 +200,20 @@ std::vector<Parameter> parameters() {
          .min = -2 * pi,
          .max = 2 * pi,
          .fit = {{.low = 0, .high = pi, .data = anisotropic}}},
+        // Fits take it as stated: a film of a fit covers all facets.
+        unit("iridescenceFactor", "share of the facets under a thin film", 0, {}),
+        {.name = "iridescenceIor",
+         .help = "of the film",
+         .fallback = 1.3,
+         .min = 1,
+         .max = 100,
+         .fit = {{.low = 1.2, .high = 2.6, .choice = "iridescenceFactor"}}},
+        {.name = "iridescenceThickness",
+         .help = "of the film, nm",
+         .fallback = 400,
+         .min = 0,
+         .max = 1e5,
+         .fit = {{.low = 150, .high = 900, .choice = "iridescenceFactor"}}},
     };
 }
 
@@ -210,6 +228,7 @@ const Model& gltfPbrModel() {
         .laws = claims,
         .make = make,
         .columns = columns,
+        .channelwise = GltfPbrFormula::coloured,
         .sampling = sampling,
         .parts = {{"ior", "KHR_materials_ior", {"ior"}},
                   {"specular", "KHR_materials_specular", {"specularFactor", "specularColorFactor"}},
@@ -219,7 +238,11 @@ const Model& gltfPbrModel() {
                    {"clearcoatFactor", "clearcoatRoughnessFactor"}},
                   {"anisotropy",
                    "KHR_materials_anisotropy",
-                   {"anisotropyStrength", "anisotropyRotation"}}}};
+                   {"anisotropyStrength", "anisotropyRotation"}},
+                  {"iridescence",
+                   "KHR_materials_iridescence",
+                   {"iridescenceFactor", "iridescenceIor", "iridescenceThickness"},
+                   "iridescenceFactor=1"}}};
     return model;
 }
 

@@ -5,6 +5,7 @@
 #include <brdfs/analytic/ggx_facets.h>
 #include <brdfs/analytic/sheen_albedo.h>
 #include <brdfs/analytic/term_columns.h>
+#include <brdfs/analytic/thin_film_terms.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace hshfit::brdfs::HWY_NAMESPACE {
@@ -24,7 +25,7 @@ class GltfPbrTerms {
     using N = ParameterOf<T>;
 
 public:
-    static constexpr std::size_t count = 5;
+    static constexpr std::size_t count = 8;
 
     HWY_INLINE GltfPbrTerms(const GltfPbrShape<N>& shape, const OutgoingOf<T>& wo)
         : shape_(shape),
@@ -57,9 +58,19 @@ public:
         const T lobe =
             base_.lobe(turned(half, h.squaredLength()), turned(above, R(1.0)), z_, outgoing_);
         const T specular(shape_.specular), transmitted(1 - shape_.f0);
-        term[0] = under * (1.0 - specular + specular * transmitted * (1.0 - rise));
-        term[1] = under * lobe * (1.0 - rise);
-        term[2] = under * lobe * rise;
+        const T reflected = under * lobe;
+        if (isZero(shape_.film.weight)) {
+            term[0] = under * (1.0 - specular + specular * transmitted * (1.0 - rise));
+            term[1] = reflected * (1.0 - rise);
+            term[2] = reflected * rise;
+            term[5] = term[6] = term[7] = T(0.0);
+        } else {
+            const T bare = reflected * T(1 - shape_.film.weight);
+            term[0] = under *
+                      underFilm(h.dotOutgoing(), rise, T(shape_.film.weight) * reflected, term + 5);
+            term[1] = bare * (1.0 - rise);
+            term[2] = bare * rise;
+        }
         term[4] = isZero(shape_.clearcoat) ? T(0.0)
                                            : coatFresnel_ * coat_.lobe(h, above, z_, coatOutgoing_);
     }
@@ -67,6 +78,26 @@ public:
 private:
     HWY_INLINE Turned<T> turned(const Incoming<R>& w, R squaredLength) const {
         return {cosine_ * w.x + sine_ * w.y, cosine_ * w.y - sine_ * w.x, w.z, squaredLength};
+    }
+    /// The share of the diffuse part under the film; writes `lobe` times the film's reflectances.
+    HWY_INLINE T underFilm(R cosine, R rise, T lobe, T* term) const {
+        const FilmShape<N>& film = shape_.film;
+        const FilmWaves<T> waves(film, cosine);
+        T largest(0.0);
+        for (std::size_t c = 0; c < 3; ++c) {
+            T sum(0.0);
+            if (!isZero(film.dielectricScale[c])) {
+                const N& f0 = shape_.f0Of[c];
+                const T under = waves.reflectance(film.dielectric, c);
+                const T bare = T(shape_.specular) * (T(f0) + T(1 - f0) * rise);
+                largest = max(largest, bare + T(film.weight) * (under - bare));
+                sum = T(film.dielectricScale[c]) * under;
+            }
+            if (!isZero(film.metalScale[c]))
+                sum = sum + T(film.metalScale[c]) * waves.reflectance(film.metal, c);
+            term[c] = lobe * sum;
+        }
+        return 1.0 - largest;
     }
     /// E from the table of the shape (sheen_albedo.h).
     HWY_INLINE T albedo(R z) const {
@@ -97,6 +128,30 @@ struct GltfPbrFormula {
     static N widthOf(const N& roughness) {
         return max(N(1e-4), roughness * roughness);
     }
+    /// Whether R, G and B have reflectances of their own.
+    static bool coloured(const Parameters& p) {
+        return p.number("iridescenceFactor") > 0 && p.number("iridescenceThickness") > 0;
+    }
+    template <class N>
+    static N f0(const Values<N>& p, std::size_t channel) {
+        return min(N(1.0),
+                   normalReflectanceOf(p("ior"), N(0.0)) * p.of("specularColorFactor", channel));
+    }
+    /// With the colours of all channels, of which the base's are given to lobes by their weights.
+    template <class N>
+    static void setFilm(const Values<N>& p, GltfPbrShape<N>& shape) {
+        FilmShape<N>& film = shape.film;
+        film = filmShape(p("iridescenceFactor"), p("iridescenceIor"), p("iridescenceThickness"));
+        if (isZero(film.weight)) return;
+        for (std::size_t c = 0; c < 3; ++c) {
+            shape.f0Of[c] = f0(p, c);
+            setFilmBase(shape.specular * shape.f0Of[c], c, film, film.dielectric);
+            setFilmBase(p.of("baseColorFactor", c), c, film, film.metal);
+            const N metallic = p("metallicFactor");
+            film.dielectricScale[c] = 1 - metallic;
+            film.metalScale[c] = p.wanted(c) ? metallic : N(0.0);
+        }
+    }
     /// The shape of one channel; gltf_pbr.cpp puts in the largest of all.
     template <class N>
     static GltfPbrShape<N> shape(const Values<N>& p) {
@@ -106,18 +161,20 @@ struct GltfPbrFormula {
         const N along = alpha + (1 - alpha) * strength * strength;
         const N least(SheenAlbedoTable::leastRoughness),
             sheenRoughness = max(least, p("sheenRoughnessFactor"));
-        GltfPbrShape<N> shape{
-            .base = {{along, alpha}},
-            .coat = {{coat, coat}},
-            .cosine = cos(rotation),
-            .sine = sin(rotation),
-            .specular = p("specularFactor"),
-            .f0 = min(N(1.0), normalReflectanceOf(p("ior"), N(0.0)) * p("specularColorFactor")),
-            .clearcoat = p("clearcoatFactor"),
-            .sheen = p("sheenColorFactor"),
-            .sheenPeak = p("sheenColorFactor"),
-            .curve = charlieCurve(sheenRoughness * sheenRoughness),
-            .albedo = {}};
+        GltfPbrShape<N> shape{.base = {{along, alpha}},
+                              .coat = {{coat, coat}},
+                              .cosine = cos(rotation),
+                              .sine = sin(rotation),
+                              .specular = p("specularFactor"),
+                              .f0 = f0(p, p.channel()),
+                              .clearcoat = p("clearcoatFactor"),
+                              .sheen = p("sheenColorFactor"),
+                              .sheenPeak = p("sheenColorFactor"),
+                              .curve = charlieCurve(sheenRoughness * sheenRoughness),
+                              .albedo = {},
+                              .f0Of = {},
+                              .film = {}};
+        setFilm(p, shape);
         if (!isZero(shape.sheen)) setAlbedo(sheenRoughness, shape);
         return shape;
     }
@@ -128,15 +185,17 @@ struct GltfPbrFormula {
         for (std::size_t k = 0; k < values.size(); ++k)
             shape.albedo[k] = values[k] + slopes[k] * (roughness - plain(roughness));
     }
-    /// Weights of the diffuse part, F0 and the white rest of the lobe, the sheen and the coat.
+    /// Weights of the diffuse part, F0 and the white rest of the lobe, the sheen, the coat, and the
+    /// lobe under a film in each channel.
     template <class N>
     static Weights<N> weights(const Values<N>& p) {
         const N metallic = p("metallicFactor"), base = p("baseColorFactor");
         const N dielectric = (1 - metallic) * p("specularFactor");
-        const N f0 = min(N(1.0), normalReflectanceOf(p("ior"), N(0.0)) * p("specularColorFactor"));
+        const auto own = [&](std::size_t c) { return N(p.channel() == c ? 1.0 : 0.0); };
         return {N(0.0),
-                {(1 - metallic) * base / pi, dielectric * f0 + metallic * base,
-                 dielectric + metallic, p("sheenColorFactor"), p("clearcoatFactor")}};
+                {(1 - metallic) * base / pi, dielectric * f0(p, p.channel()) + metallic * base,
+                 dielectric + metallic, p("sheenColorFactor"), p("clearcoatFactor"), own(0), own(1),
+                 own(2)}};
     }
 };
 

@@ -18,10 +18,11 @@ struct PairBatch {
 ///     f = column_0 + sum_k linear_k column_k,
 /// with derivatives by the parameters in which f is not linear.
 struct ColumnRequest {
-    const Parameters& values;                   ///< colours grey; those of `linears` do not count
+    const Parameters& values;  ///< colours grey, or of `channel`; those of `linears` do not count
     std::span<const std::string> linears = {};  ///< parameters in which f is jointly linear
     /// Parameters of the derivatives; the keys of a group share one value. Empty: no derivatives.
     std::span<const std::vector<std::string>> shapes = {};
+    std::size_t channel = 0;  ///< of a model with functions of each channel (Model::channelwise)
 };
 
 /// The columns at the values of a request. Thread-safe.

@@ -137,7 +137,21 @@ std::vector<Parameter> parameters() {
         unit("coat_darkening", "share of the reflections inside the coat", 1, {FitRange{}}),
         unit("fuzz_weight", "presence of the fuzz", 0, {{.low = 0.1, .high = 0.9}}),
         linearIf(colour("fuzz_color", "of the fuzz", 1, {{.low = 0.1, .high = 1}}), alwaysLinear),
-        unit("fuzz_roughness", "of its fibres", 0.5, {{.low = 0.1, .high = 0.9}})};
+        unit("fuzz_roughness", "of its fibres", 0.5, {{.low = 0.1, .high = 0.9}}),
+        // Fits take it as stated: a film of a fit covers all facets.
+        unit("thin_film_weight", "share of the base's facets under a thin film", 0),
+        {.name = "thin_film_thickness",
+         .help = "of the film, micrometres",
+         .fallback = 0.5,
+         .min = 0,
+         .max = 100,
+         .fit = {{.low = 0.15, .high = 0.9, .choice = "thin_film_weight"}}},
+        {.name = "thin_film_ior",
+         .help = "of the film",
+         .fallback = 1.4,
+         .min = 1,
+         .max = 3,
+         .fit = {{.low = 1.2, .high = 2.6, .choice = "thin_film_weight"}}}};
 }
 
 }  // namespace
@@ -145,12 +159,13 @@ std::vector<Parameter> parameters() {
 const Model& openpbrModel() {
     static const Model model{
         .name = "openpbr",
-        .help = "OpenPBR Surface: base, metal, coat and fuzz",
+        .help = "OpenPBR Surface: base, metal, thin film, coat and fuzz",
         .source = "OpenPBR Surface 1.1, Academy Software Foundation 2024",
         .parameters = parameters(),
         .laws = claims,
         .make = make,
         .columns = columns,
+        .channelwise = OpenpbrFormula::coloured,
         .sampling = sampling,
         .parts = {{"specular", "strength of the dielectric's lobe", {"specular_weight"}},
                   {"ior", "index of the dielectric", {"specular_ior"}},
@@ -159,7 +174,11 @@ const Model& openpbrModel() {
                    {"coat_weight", "coat_color", "coat_roughness", "coat_roughness_anisotropy",
                     "coat_ior", "coat_darkening"}},
                   {"fuzz", "fibres above all", {"fuzz_weight", "fuzz_color", "fuzz_roughness"}},
-                  {"anisotropy", "lobe wider along x", {"specular_roughness_anisotropy"}}}};
+                  {"anisotropy", "lobe wider along x", {"specular_roughness_anisotropy"}},
+                  {"thin_film",
+                   "interference on the base",
+                   {"thin_film_weight", "thin_film_thickness", "thin_film_ior"},
+                   "thin_film_weight=1"}}};
     return model;
 }
 

@@ -18,8 +18,11 @@ namespace hshfit::brdfs {
 ///
 /// Approximations: layers by albedo scaling with cos_o alone, hence not reciprocal; absorption in
 /// the coat does not depend on the angle; E_s and E_c are of sqrt(ax ay), to 1e-3; no light that
-/// facets scatter twice; alpha is at least 1e-4. Without transmission, subsurface, thin film,
-/// emission.
+/// facets scatter twice; alpha is at least 1e-4. The specification leaves the film's formula open
+/// (it names Belcour & Barla 2017): here it is glTF's. MaterialX 1.39 has the boundaries of each
+/// polarisation, halves the reflectance of a metal's, and turns the whole sum by its matrix. E_s
+/// is that without the film, as in MaterialX, and the film's metal has no bend. Without
+/// transmission, subsurface, emission.
 const Model& openpbrModel();
 
 }  // namespace hshfit::brdfs

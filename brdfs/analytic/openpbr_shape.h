@@ -2,6 +2,7 @@
 
 #include <brdfs/analytic/eon_shape.h>
 #include <brdfs/analytic/ggx_shape.h>
+#include <brdfs/analytic/thin_film.h>
 
 #include <array>
 
@@ -20,6 +21,7 @@ struct OpenpbrShape {
     EonShape<N> diffuse;
     N eta, coatEta, coatWeight, fuzzWeight, fuzzRoughness;
     FacetAlbedo<N> specularAlbedo, coatAlbedo;
+    FilmShape<N> film;
 };
 
 }  // namespace hshfit::brdfs

@@ -4,6 +4,7 @@
 #include <brdfs/analytic/facet_albedo.h>
 #include <brdfs/analytic/ggx_facets.h>
 #include <brdfs/analytic/term_columns.h>
+#include <brdfs/analytic/thin_film_terms.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace hshfit::brdfs::HWY_NAMESPACE {
@@ -45,7 +46,7 @@ class OpenpbrTerms {
     using N = ParameterOf<T>;
 
 public:
-    static constexpr std::size_t count = 8;
+    static constexpr std::size_t count = 11;
 
     HWY_INLINE OpenpbrTerms(const OpenpbrShape<N>& shape, const OutgoingOf<T>& wo)
         : shape_(shape),
@@ -69,7 +70,12 @@ public:
         const Incoming<R> above{wi.x, wi.y, max(wi.z, R(0.0))};
         const HalfVector<R> h(wo_, above);
         const R cosine = h.dotOutgoing(), rest = 1.0 - cosine, rise = schlickWeightOf(cosine);
-        const T lobe = under_ * base_.lobe(h, above, z_, outgoing_);
+        T lobe = under_ * base_.lobe(h, above, z_, outgoing_);
+        term[8] = term[9] = term[10] = T(0.0);
+        if (!isZero(shape_.film.weight)) {
+            addFilm(cosine, T(shape_.film.weight) * lobe, term + 8);
+            lobe = lobe * T(1 - shape_.film.weight);
+        }
         diffuse_(wi, term);
         for (int i = 0; i < 2; ++i) term[i] = underFacets_ * bounded(term[i]);
         term[2] = lobe * reflectanceOf<T>(cosine, shape_.eta, N(0.0));
@@ -84,6 +90,19 @@ public:
     }
 
 private:
+    /// `lobe` times the film's reflectances.
+    HWY_INLINE void addFilm(R cosine, T lobe, T* term) const {
+        const FilmShape<N>& film = shape_.film;
+        const FilmWaves<T> waves(film, cosine);
+        for (std::size_t c = 0; c < 3; ++c) {
+            T sum(0.0);
+            if (!isZero(film.dielectricScale[c]))
+                sum = T(film.dielectricScale[c]) * waves.reflectance(film.dielectric, c);
+            if (!isZero(film.metalScale[c]))
+                sum = sum + T(film.metalScale[c]) * waves.reflectance(film.metal, c);
+            term[c] = lobe * sum;
+        }
+    }
     /// E_z / pi (a / |M wi|^2)^2, M = (a 0 b; 0 a 0; 0 0 1) in the plane of wo and the normal.
     HWY_INLINE T fuzz(const Incoming<R>& wi) const {
         const R along = wi.x * fuzz_.x + wi.y * fuzz_.y, across = wi.y * fuzz_.x - wi.x * fuzz_.y;
@@ -141,6 +160,24 @@ struct OpenpbrFormula {
     static EonSettings<N> diffuse(const Values<N>& p) {
         return {eonRoughness(p("base_diffuse_roughness")), true};
     }
+    static bool coloured(const Parameters& p) {
+        return p.number("thin_film_weight") > 0 && p.number("thin_film_thickness") > 0;
+    }
+    template <class N>
+    static void setFilm(const Values<N>& p, OpenpbrShape<N>& shape) {
+        FilmShape<N>& film = shape.film;
+        film = filmShape<N>(p("thin_film_weight"), p("thin_film_ior"),
+                            1000 * p("thin_film_thickness"));
+        if (isZero(film.weight)) return;
+        const N metal = p("base_metalness");
+        for (std::size_t c = 0; c < 3; ++c) {
+            if (!p.wanted(c)) continue;
+            setFilmBase(normalReflectanceOf(shape.eta, N(0.0)), c, film, film.dielectric);
+            setFilmBase(p("base_weight") * p.of("base_color", c), c, film, film.metal);
+            film.dielectricScale[c] = (1 - metal) * p.of("specular_color", c);
+            film.metalScale[c] = metal * p("specular_weight");
+        }
+    }
     template <class N>
     static OpenpbrShape<N> shape(const Values<N>& p) {
         OpenpbrShape<N> shape{.base = {baseAxes(p)},
@@ -152,7 +189,9 @@ struct OpenpbrFormula {
                               .fuzzWeight = p("fuzz_weight"),
                               .fuzzRoughness = max(N(0.01), p("fuzz_roughness")),
                               .specularAlbedo = {},
-                              .coatAlbedo = {}};
+                              .coatAlbedo = {},
+                              .film = {}};
+        setFilm(p, shape);
         const auto average = [](const RoughnessOf<N>& r) HWY_ATTR { return sqrt(r.ax * r.ay); };
         if (!isZero(1 - p("base_metalness")))
             shape.specularAlbedo = facetAlbedoTable(average(shape.base.r), shape.eta);
@@ -179,10 +218,11 @@ struct OpenpbrFormula {
         const N dip = -(base + (1 - base) * rise) * (1 - specular * edge) / bend;
         const N under = tint(p), dielectric = (1 - metal) * under,
                 conductor = metal * specular * under;
+        const auto own = [&](std::size_t c) { return p.channel() == c ? under : N(0.0); };
         return {N(0.0),
                 {dielectric * base / pi, dielectric * diffuse(p).multiple(base), dielectric * edge,
                  conductor * base, conductor, conductor * dip, p("coat_weight"),
-                 p("fuzz_weight") * p("fuzz_color")}};
+                 p("fuzz_weight") * p("fuzz_color"), own(0), own(1), own(2)}};
     }
 };
 

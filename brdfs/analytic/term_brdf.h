@@ -34,7 +34,7 @@ Lobe halfwayLobe(double widthX, double widthY);
 
 /// One call of TermBrdf::eval, for wo.z > 0: `constant` [channel], `weights` [channel][term].
 struct TermBatch {
-    static constexpr std::size_t maxTerms = 8, maxChannels = 3;
+    static constexpr std::size_t maxTerms = 11, maxChannels = 3;
 
     const Direction& wo;
     DirectionBatch wi;

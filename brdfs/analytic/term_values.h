@@ -34,7 +34,11 @@ public:
     /// The linear parameter `unit` is 1 and all others are 0. Derivatives are those by shapes
     /// from `first` on.
     Values(const ColumnRequest& request, std::string_view unit, std::size_t first)
-        : parameters_(request.values), request_(&request), unit_(unit), first_(first) {}
+        : parameters_(request.values),
+          channel_(request.channel),
+          request_(&request),
+          unit_(unit),
+          first_(first) {}
 
     N operator()(std::string_view name) const {
         if (request_ && std::ranges::find(request_->linears, name) != request_->linears.end())
@@ -49,6 +53,14 @@ public:
                     value.by[i] = 1;
         return value;
     }
+    std::size_t channel() const { return channel_; }
+    /// The same in another channel, of which a fit has no derivatives.
+    N of(std::string_view name, std::size_t channel) const {
+        const std::vector<double>& all = parameters_.numbers.find(name)->second;
+        return channel == channel_ || all.size() == 1 ? (*this)(name) : N(all[channel]);
+    }
+    /// Whether functions of this channel are wanted: of all, or in a fit of one.
+    bool wanted(std::size_t channel) const { return !request_ || channel == channel_; }
     bool chosen(std::string_view name, std::string_view word) const {
         return parameters_.choice(name) == word;
     }
@@ -80,6 +92,8 @@ TermWeights channelWeights(const Parameters& parameters) {
     std::size_t channels = 1;
     for (const auto& [name, values] : parameters.numbers)
         channels = std::max(channels, values.size());
+    if constexpr (requires { Formula::coloured(parameters); })
+        if (Formula::coloured(parameters)) channels = 3;
     TermWeights all;
     for (std::size_t c = 0; c < channels; ++c) {
         const Weights<double> own = Formula::weights(Values<double>(parameters, c));

@@ -1,4 +1,5 @@
-// Angles from sines and cosines, of Lanes and of double. Compiled once for each instruction set.
+// Angles from sines and cosines, and the reverse, of Lanes and of double. Compiled once for each
+// instruction set.
 
 #if defined(BRDFS_LANES_LANES_ANGLES_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BRDFS_LANES_LANES_ANGLES_H
@@ -22,6 +23,14 @@ HWY_INLINE Lanes atanOfRatio(Lanes y, Lanes x) {
 }
 HWY_INLINE double atanOfRatio(double y, double x) {
     return std::atan(y / x);
+}
+
+/// For |x| < 39000, within 3 units of the last place of 1 (Highway); of double lanes_slopes_math.h.
+HWY_INLINE Lanes cos(Lanes x) {
+    return Lanes(hn::Cos(Lanes::Tag(), x.v));
+}
+HWY_INLINE Lanes sin(Lanes x) {
+    return Lanes(hn::Sin(Lanes::Tag(), x.v));
 }
 
 /// The polar angle of a direction above the horizon and its complement; the smaller of the two

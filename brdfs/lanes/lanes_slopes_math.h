@@ -58,13 +58,14 @@ HWY_INLINE double sin(double a) {
 HWY_INLINE double cos(double a) {
     return std::cos(a);
 }
-template <int n>
-HWY_INLINE Slopes<double, n> sin(const Slopes<double, n>& a) {
-    return Slopes<double, n>::chained(std::sin(a.value), std::cos(a.value), a);
+/// Of Lanes with those of lanes_angles.h.
+template <class V, int n>
+HWY_INLINE Slopes<V, n> sin(const Slopes<V, n>& a) {
+    return Slopes<V, n>::chained(sin(a.value), cos(a.value), a);
 }
-template <int n>
-HWY_INLINE Slopes<double, n> cos(const Slopes<double, n>& a) {
-    return Slopes<double, n>::chained(std::cos(a.value), -std::sin(a.value), a);
+template <class V, int n>
+HWY_INLINE Slopes<V, n> cos(const Slopes<V, n>& a) {
+    return Slopes<V, n>::chained(cos(a.value), -sin(a.value), a);
 }
 template <class V, int n>
 HWY_INLINE Slopes<V, n> expm1(const Slopes<V, n>& a) {

@@ -130,7 +130,8 @@ GltfMaterial gltfOf(const std::string& name, const Parameters& p) {
                           .specular = {},
                           .sheen = {},
                           .clearcoat = {},
-                          .anisotropy = {}};
+                          .anisotropy = {},
+                          .iridescence = {}};
     constexpr MaterialColour black{0, 0, 0}, white{1, 1, 1};
     if (p.number("ior") != 1.5) material.ior = p.number("ior");
     const GltfMaterial::Specular specular{p.number("specularFactor"),
@@ -143,6 +144,9 @@ GltfMaterial gltfOf(const std::string& name, const Parameters& p) {
         material.clearcoat = {p.number("clearcoatFactor"), p.number("clearcoatRoughnessFactor")};
     if (p.number("anisotropyStrength") > 0)
         material.anisotropy = {p.number("anisotropyStrength"), p.number("anisotropyRotation")};
+    if (p.number("iridescenceFactor") > 0)
+        material.iridescence = {p.number("iridescenceFactor"), p.number("iridescenceIor"),
+                                p.number("iridescenceThickness")};
     return material;
 }
 
@@ -159,21 +163,26 @@ std::string nodeInput(std::string_view name) {
         {"clearcoatFactor", "clearcoat"},
         {"clearcoatRoughnessFactor", "clearcoat_roughness"},
         {"anisotropyStrength", "anisotropy_strength"},
-        {"anisotropyRotation", "anisotropy_rotation"}};
+        {"anisotropyRotation", "anisotropy_rotation"},
+        {"iridescenceFactor", "iridescence"},
+        {"iridescenceIor", "iridescence_ior"},
+        {"iridescenceThickness", "iridescence_thickness"}};
     for (const auto& [from, to] : renamed)
         if (from == name) return std::string(to);
     return std::string(name);
 }
 
-/// Inputs with other values than the model's defaults, or that the node does not share, and the
-/// base in any case.
+/// Inputs with other values than the model's defaults, or that the node does not share, the base in
+/// any case, and all of a film, of which the node gltf_pbr has another thickness by default.
 std::vector<MaterialXInput> inputsOf(std::string_view model, const Parameters& p) {
     const auto row = std::ranges::find(brdfs::models(), model, &brdfs::Model::name);
     std::vector<MaterialXInput> inputs;
     for (const Parameter& parameter : row->parameters) {
         const bool colour = parameter.kind == Parameter::Kind::colour;
         const bool optional = std::ranges::any_of(row->parts, [&](const brdfs::ModelPart& part) {
-            return std::ranges::find(part.parameters, parameter.name) != part.parameters.end();
+            const bool film = !part.with.empty() && p.number(part.parameters.front()) > 0;
+            return !film &&
+                   std::ranges::find(part.parameters, parameter.name) != part.parameters.end();
         });
         const std::vector<double> values = p.colour(parameter.name);
         if (optional && values == std::vector<double>{*parameter.fallback}) continue;

@@ -62,10 +62,10 @@ FacetLobe::FacetLobe(const std::string& specification)
     : brdf(brdfs::openModel(specification)),
       facets(dynamic_cast<const brdfs::HasFacetNormals*>(brdf.get())) {
     if (facets != nullptr) return;
-    throw InputError(
-        fmt::format("{} is no smooth part and one lobe of microfacets, which turned and filtered "
-                    "texels need; models that are: {} (gltf-pbr without clearcoat and sheen)",
-                    specification, fmt::join(facetModels(), ", ")));
+    throw InputError(fmt::format(
+        "{} is no smooth part and one lobe of microfacets, which turned and filtered "
+        "texels need; models that are: {} (gltf-pbr without clearcoat, sheen and iridescence)",
+        specification, fmt::join(facetModels(), ", ")));
 }
 
 namespace {

@@ -1,5 +1,7 @@
-// The functions of lanes_math.h over arrays, for lanes_test.cpp; once for each instruction set.
+// The functions of lanes_math.h and lanes_angles.h over arrays, for lanes_test.cpp; once for each
+// instruction set.
 
+#include <brdfs/lanes/lanes_angles.h>
 #include <brdfs/lanes/lanes_math.h>
 
 #include <algorithm>
@@ -38,6 +40,12 @@ void lanesErfc(const double* x, std::size_t size, double* y) {
 }
 void lanesIerfc(const double* x, std::size_t size, double* y) {
     overArray(x, size, y, [](Lanes v) HWY_ATTR { return ierfc(v); });
+}
+void lanesCos(const double* x, std::size_t size, double* y) {
+    overArray(x, size, y, [](Lanes v) HWY_ATTR { return cos(v); });
+}
+void lanesSin(const double* x, std::size_t size, double* y) {
+    overArray(x, size, y, [](Lanes v) HWY_ATTR { return sin(v); });
 }
 void lanesPow(const double* x, double power, std::size_t size, double* y) {
     overArray(x, size, y, [power](Lanes v) HWY_ATTR { return pow(v, Lanes(power)); });

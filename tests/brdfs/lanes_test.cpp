@@ -21,6 +21,8 @@ HWY_EXPORT(lanesLog);
 HWY_EXPORT(lanesLog1p);
 HWY_EXPORT(lanesErfc);
 HWY_EXPORT(lanesIerfc);
+HWY_EXPORT(lanesCos);
+HWY_EXPORT(lanesSin);
 HWY_EXPORT(lanesPow);
 
 constexpr std::size_t count = 40000;
@@ -116,6 +118,24 @@ TEST(Lanes, Log1pIsWithinItsBound) {
         expectWithin(log1p, scales(1e-300, 1e300, false), exact, 3);
         expectWithin(log1p, uniform(-0.999, 3, 7), exact, 3);
         expectWithin(log1p, scales(1e-300, 0.5, true), exact, 3);
+    });
+}
+
+// Near a zero the error is one of the units of 1.
+TEST(Lanes, CosAndSinAreWithinTheirBound) {
+    test::forEveryTarget([&] {
+        for (const double most : {1., 40., 39000.}) {
+            const std::vector<double> x = uniform(-most, most, 8);
+            std::vector<double> cosine(x.size()), sine(x.size());
+            HWY_DYNAMIC_DISPATCH(lanesCos)(x.data(), x.size(), cosine.data());
+            HWY_DYNAMIC_DISPATCH(lanesSin)(x.data(), x.size(), sine.data());
+            // Of the library half a unit more.
+            const double bound = 3.5 * std::numeric_limits<double>::epsilon();
+            for (std::size_t k = 0; k < x.size(); ++k) {
+                ASSERT_NEAR(cosine[k], std::cos(x[k]), bound) << x[k];
+                ASSERT_NEAR(sine[k], std::sin(x[k]), bound) << x[k];
+            }
+        }
     });
 }
 

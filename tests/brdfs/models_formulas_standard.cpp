@@ -1,6 +1,6 @@
 // The materials of glTF and OpenPBR against their specifications' formulas, written as they are
 // printed: glTF 2.0 appendix B, but for its masking, with its extensions' "Implementation"
-// sections, and the reference graph of OpenPBR 1.1 in MaterialX 1.39.
+// sections, and the reference graph of OpenPBR 1.1 in MaterialX 1.39, but for its film.
 
 #include "models_angles.h"
 
@@ -268,6 +268,107 @@ TEST(StandardMaterials, OpenpbrCoatAndFuzzLieAboveTheBase) {
             return f;
         },
         2e-3);
+}
+
+/// `iridescent_fresnel` of KHR_materials_iridescence as printed, but for a base of F0 = 1, with a
+/// cut at 1. The phases of R, G and B are those of their own bases.
+Vector iridescentFresnel(double outside, double ior, const Vector& baseF0, double thickness,
+                         double cosine) {
+    constexpr double toRgb[3][3] = {{3.2404542, -1.5371385, -0.4985314},
+                                    {-0.9692660, 1.8760108, 0.0415560},
+                                    {0.0556434, -0.2040259, 1.0572252}};
+    const double sine2 = square(outside / ior) * (1 - cosine * cosine);
+    const double cosine2 = std::sqrt(1 - sine2), path = 2 * ior * thickness * cosine2;
+    const double r12 = schlick(square((ior - outside) / (ior + outside)), cosine), t121 = 1 - r12;
+    Vector result;
+    for (int c = 0; c < 3; ++c) {
+        const double root = std::sqrt(baseF0[c]), index = (1 + root) / (1 - root);
+        const double r23 = schlick(square((index - ior) / (index + ior)), cosine2);
+        const double phi = pi + (index < ior ? pi : 0);
+        const double r123 = std::clamp(r12 * r23, 1e-5, 0.9999);
+        const double rs = square(t121) * r23 / (1 - r123);
+        double cm = rs - t121;
+        result[c] = r12 + rs;
+        for (int m = 1; m <= 2; ++m) {
+            cm *= std::sqrt(r123);
+            const double phase = 2 * pi * m * path * 1e-9, shift = m * phi;
+            const auto gaussian = [&](double val, double pos, double var) {
+                return val * std::sqrt(2 * pi * var) * std::cos(pos * phase + shift) *
+                       std::exp(-square(phase) * var) / 1.0685e-7;
+            };
+            const double x = gaussian(5.4856e-13, 1.6810e6, 4.3278e9) +
+                             gaussian(9.7470e-14, 2.2399e6, 4.5282e9),
+                         y = gaussian(4.4201e-13, 1.7953e6, 9.3046e9),
+                         z = gaussian(5.2481e-13, 2.2084e6, 6.6121e9);
+            result[c] += cm * 2 * (toRgb[c][0] * x + toRgb[c][1] * y + toRgb[c][2] * z);
+        }
+        result[c] = std::clamp(result[c], 0., 1.);
+    }
+    return result;
+}
+
+TEST(StandardMaterials, GltfIridescenceIsTheExtension) {
+    const Vector base{0.8, 0.5, 0.2}, tint{1, 0.5, 0.2};
+    const double ior = 1.8, specular = 0.7, metallic = 0.25, alpha = 0.16;
+    for (const double thickness : {150., 400., 900.})
+        for (const double film : {1.2, 1.45, 1.9})
+            for (const double strength : {0.4, 1.})
+                expectClose(
+                    fmt::format("gltf-pbr:baseColorFactor=.8/.5/.2,metallicFactor=.25,"
+                                "roughnessFactor=.4,ior=1.8,specularFactor=.7,"
+                                "specularColorFactor=1/.5/.2,iridescenceFactor={},"
+                                "iridescenceIor={},iridescenceThickness={}",
+                                strength, film, thickness),
+                    [&](const Pair& p) {
+                        const double cosine = dotOf(vectorOf(p.wo), halfOf(p));
+                        const double lobe = viewerLobe(p, alpha);
+                        Vector f0, alphas, f;
+                        for (int c = 0; c < 3; ++c)
+                            f0[c] = square((1 - ior) / (1 + ior)) * tint[c] * specular;
+                        const Vector under = iridescentFresnel(1, film, f0, thickness, cosine);
+                        const Vector metal = iridescentFresnel(1, film, base, thickness, cosine);
+                        for (int c = 0; c < 3; ++c)
+                            alphas[c] = mix(specular * schlick(f0[c] / specular, cosine), under[c],
+                                            strength);
+                        const double largest = *std::ranges::max_element(alphas);
+                        for (int c = 0; c < 3; ++c)
+                            f[c] = mix((1 - largest) * base[c] / pi + alphas[c] * lobe,
+                                       lobe * mix(schlick(base[c], cosine), metal[c], strength),
+                                       metallic);
+                        return f;
+                    });
+}
+
+TEST(StandardMaterials, OpenpbrThinFilmIsThatOfGltfOnTheFacetsOfTheBase) {
+    const Vector base{0.9, 0.6, 0.3};
+    const double specular = 0.9, ior = 1.5, weight = 0.6;
+    const double root = std::sqrt(specular * square((ior - 1) / (ior + 1)));
+    const double f0 = square(root), eta = (1 + root) / (1 - root);
+    const auto facets = open(fmt::format("ggx:alpha=.25,fresnel=dielectric,ior={:.17g}", eta));
+    for (const double metalness : {0., 0.4, 1.})
+        expectClose(
+            fmt::format("openpbr:base_color=.9/.6/.3,base_metalness={},specular_weight=.9,"
+                        "specular_roughness=.5,thin_film_weight=.6,thin_film_ior=1.8,"
+                        "thin_film_thickness=.45",
+                        metalness),
+            [&](const Pair& p) {
+                const double cosine = dotOf(vectorOf(p.wo), halfOf(p)), lobe = viewerLobe(p, 0.25);
+                const double left = 1 - directionalAlbedo(*facets, p.wo, 1e-4)[0], max = 1. / 7;
+                const Vector metal = iridescentFresnel(1, 1.8, base, 450, cosine);
+                const Vector under = iridescentFresnel(1, 1.8, {f0, f0, f0}, 450, cosine);
+                Vector f;
+                for (int k = 0; k < 3; ++k) {
+                    const double bend = schlick(base[k], max) * (1 - specular) /
+                                        (max * std::pow(1 - max, 6)) * cosine *
+                                        std::pow(1 - cosine, 6);
+                    const double bare = schlick(base[k], cosine) - bend;
+                    f[k] = mix(
+                        left * base[k] / pi + lobe * mix(dielectric(cosine, eta), under[k], weight),
+                        specular * lobe * mix(bare, metal[k], weight), metalness);
+                }
+                return f;
+            },
+            2e-3);
 }
 
 // Every part at its defaults leaves the model without it.

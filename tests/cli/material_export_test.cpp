@@ -62,6 +62,37 @@ TEST_F(Cli, GltfHasTheParametersThatAreGiven) {
     EXPECT_TRUE(material["extras"]["hshfit"]["loss"].contains("reason"));
 }
 
+// The thickness is the maximum of a range without a texture; the node gltf_pbr has another default
+// of it, so that a film is written whole.
+TEST_F(Cli, FilmsAreInBothFiles) {
+    const std::string gltf =
+        "gltf-pbr:baseColorFactor=.5,iridescenceFactor=.75,iridescenceIor=1.75";
+    const std::string out = " --json --name film -o " + path("out");
+    ASSERT_EQ(run("export " + gltf + ",iridescenceThickness=250 --target gltf" + out).code, 0);
+    const Json json = jsonOf(read(path("out/film.glb")));
+    const Json expected = Json::parse(R"({"KHR_materials_iridescence": {"iridescenceFactor": 0.75,
+        "iridescenceIor": 1.75, "iridescenceThicknessMaximum": 250.0}})");
+    EXPECT_EQ(json["materials"][0]["extensions"], expected);
+    EXPECT_EQ(json["extensionsUsed"], Json::array({"KHR_materials_iridescence"}));
+    ASSERT_EQ(run("export " + gltf + " --target materialx" + out).code, 0);
+    const std::string node = read(path("out/film.mtlx"));
+    for (const char* input : {R"(name="iridescence" type="float" value="0.75")",
+                              R"(name="iridescence_ior" type="float" value="1.75")",
+                              R"(name="iridescence_thickness" type="float" value="400)"})
+        EXPECT_NE(node.find(input), std::string::npos) << input << node;
+    ASSERT_EQ(
+        run("export openpbr:thin_film_weight=.5,thin_film_ior=1.75 --target materialx --force" +
+            out)
+            .code,
+        0);
+    const std::string openpbr = read(path("out/film.mtlx"));
+    for (const char* input : {R"(name="thin_film_weight" type="float" value="0.5")",
+                              R"(name="thin_film_ior" type="float" value="1.75")",
+                              R"(name="thin_film_thickness" type="float" value="0.5")"})
+        EXPECT_NE(openpbr.find(input), std::string::npos) << input << openpbr;
+    EXPECT_EQ(openpbr.find("coat"), std::string::npos);
+}
+
 // A preset of a fit states its data; another model is fitted; both losses are those of compare's
 // pairs, and name a maximum.
 TEST_F(Cli, LossIsStatedInAnswerAndFiles) {

@@ -111,6 +111,13 @@ Json gltfJson(const GltfMaterial& material) {
             {"anisotropyStrength", material.anisotropy->strength},
             {"anisotropyRotation", material.anisotropy->rotation}};
     }
+    if (material.iridescence) {
+        // Without a texture the maximum is the thickness.
+        extensions["KHR_materials_iridescence"] = {
+            {"iridescenceFactor", material.iridescence->factor},
+            {"iridescenceIor", material.iridescence->ior},
+            {"iridescenceThicknessMaximum", material.iridescence->thickness}};
+    }
     Json json = {{"name", material.name},
                  {"pbrMetallicRoughness",
                   {{"baseColorFactor", Json::array({base[0], base[1], base[2], 1.0})},

@@ -31,6 +31,9 @@ struct GltfMaterial {
     struct Anisotropy {
         double strength = 0, rotation = 0;  ///< rotation in radians
     };
+    struct Iridescence {
+        double factor = 0, ior = 1.3, thickness = 400;  ///< of the film; thickness in nm
+    };
     std::string name;
     MaterialColour baseColour{1, 1, 1};
     double metallic = 1, roughness = 1;
@@ -39,6 +42,7 @@ struct GltfMaterial {
     std::optional<Sheen> sheen;
     std::optional<Clearcoat> clearcoat;
     std::optional<Anisotropy> anisotropy;
+    std::optional<Iridescence> iridescence;
 };
 
 /// The bytes of a binary glTF 2.0 file (.glb): one scene with one node, whose mesh is `surface`

@@ -16,7 +16,7 @@ struct FitRange {
     double low = 0, high = 0;       ///< range of starting values; equal: held there
     bool logarithmic = false;       ///< fitted on a logarithmic scale
     Data data = Data::any;          ///< fitted to such data only
-    std::string_view choice = {};   ///< fitted with this choice only, "key=word"; empty: any
+    std::string_view choice = {};   ///< only with this choice, "key=word", or number but 0, "key"
     std::string_view unless = {};   ///< not fitted if this parameter is stated instead
     std::string_view follows = {};  ///< equal to this parameter for isotropic data
 };
