@@ -16,6 +16,7 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 
 namespace hshfit::jobs {
@@ -174,9 +175,9 @@ public:
           view_(radians(options.viewTheta), radians(options.viewPhi), radians(options.fieldOfView)),
           columns_(columnsOf(options)),
           lights_(lightsOf(options, view_)),
-          points_(pointsOf(options, view_, result)),
-          light_(lights_, options.bound()) {
+          points_(pointsOf(options, view_, result)) {
         result.points = points_.count();
+        if (options.by != RenderOptions::By::coefficients) light_.emplace(lights_, options.bound());
     }
 
     void open(const std::vector<std::string>& specs) {
@@ -194,9 +195,9 @@ public:
     void light() {
         for (Material& material : materials_) {
             const std::string name = material.brdf->name();
-            if (options_.by != RenderOptions::By::coefficients) {
+            if (light_) {
                 material.truth =
-                    renderByIntegration(*material.brdf, points_, view_, light_,
+                    renderByIntegration(*material.brdf, points_, view_, *light_,
                                         {.tolerance = options_.bound()}, listener_.part(name));
                 check(material, material.truth->picture, 0);
             }
@@ -282,7 +283,7 @@ private:
     const Columns columns_;
     const std::vector<Light> lights_;
     const SurfacePoints points_;
-    const DirectIntegral light_;
+    std::optional<DirectIntegral> light_;  ///< unless by coefficients alone
     std::vector<Material> materials_;
     std::vector<std::vector<LitPicture>> byCoefficients_;  ///< [column][material]
 };

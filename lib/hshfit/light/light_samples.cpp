@@ -222,6 +222,23 @@ void LightSamples::add(const Direction& local, const Rgb& radiance, double solid
     for (std::size_t c = 0; c < 3; ++c) flux[c].push_back(radiance[c] * solidAngle);
 }
 
+void LightSamples::addAbove(const LightSamples& world, const Frame& frame) {
+    std::size_t n = count();
+    // Every sample is written, and the next one over it unless it is above.
+    const std::size_t most = n + world.count() + 1;
+    for (auto* values : {&x, &y, &z, &flux[0], &flux[1], &flux[2]}) values->resize(most);
+    const Direction &t = frame.tangent, &b = frame.bitangent, &up = frame.normal;
+    for (std::size_t k = 0; k < world.count(); ++k) {
+        const double wx = world.x[k], wy = world.y[k], wz = world.z[k];
+        x[n] = wx * t.x + wy * t.y + wz * t.z;
+        y[n] = wx * b.x + wy * b.y + wz * b.z;
+        z[n] = wx * up.x + wy * up.y + wz * up.z;
+        for (std::size_t c = 0; c < 3; ++c) flux[c][n] = world.flux[c][k];
+        n += z[n] > 0 ? 1 : 0;
+    }
+    for (auto* values : {&x, &y, &z, &flux[0], &flux[1], &flux[2]}) values->resize(n);
+}
+
 Rgb radianceFrom(std::span<const Light> lights, const Direction& world) {
     Rgb total{};
     for (const Light& light : lights) {

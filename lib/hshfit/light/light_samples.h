@@ -27,6 +27,8 @@ struct LightSamples {
     std::size_t count() const { return x.size(); }
     DirectionBatch directions() const { return {x.data(), y.data(), z.data(), x.size()}; }
     void add(const Direction& local, const Rgb& radiance, double solidAngle);
+    /// Adds those of samples in the world that are above the surface.
+    void addAbove(const LightSamples& world, const Frame& frame);
 };
 
 /// Radiance that comes from a direction of the world, all lights together. Directional lights,

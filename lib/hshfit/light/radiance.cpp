@@ -107,55 +107,64 @@ Radiance outgoingRadiance(const PairEvaluator& evaluator, std::size_t channels,
 
 BasisLight::BasisLight(const Basis& basis, Quantity quantity, const LightSamples& light)
     : order_(basis.order()) {
-    static_assert(laneGroup >= 3);
     const auto slots = static_cast<std::size_t>(basis.slots());
-    // Values of a batch, by slot, stay in the cache.
-    const std::size_t most = std::clamp<std::size_t>(keptValues / slots, 16, batchSize);
-    std::vector<double> table(most * slots), flux(most * laneGroup), sums(slots * laneGroup, 0.0);
+    // Columns beyond the slots of one direction are those of the next: their sums are left out.
+    const std::size_t columns = (slots + laneGroup - 1) / laneGroup * laneGroup;
+    // Values of a batch stay in the cache.
+    const std::size_t most =
+        std::min(light.count(), std::clamp<std::size_t>(keptValues / slots, 16, batchSize));
+    std::vector<double> table(most * slots + columns - slots), flux(3 * most),
+        sums(3 * columns, 0.0);
     for (std::size_t first = 0; first < light.count(); first += most) {
         const std::size_t count = std::min(most, light.count() - first);
-        basis.evaluateColumns({&light.x[first], &light.y[first], &light.z[first], count},
-                              table.data());
-        for (std::size_t k = 0; k < count; ++k) {
-            const double cosine = quantity == Quantity::brdf ? light.z[first + k] : 1;
-            for (std::size_t c = 0; c < 3; ++c)
-                flux[k * laneGroup + c] = light.flux[c][first + k] * cosine;
+        basis.evaluate({&light.x[first], &light.y[first], &light.z[first], count}, table.data());
+        for (std::size_t c = 0; c < 3; ++c) {
+            for (std::size_t k = 0; k < count; ++k) {
+                const double cosine = quantity == Quantity::brdf ? light.z[first + k] : 1;
+                flux[c * most + k] = light.flux[c][first + k] * cosine;
+            }
         }
-        addProducts({table.data(), slots, count}, {flux.data(), laneGroup, laneGroup}, count,
-                    sums.data(), laneGroup);
+        addProducts({flux.data(), 3, most}, {table.data(), columns, slots}, count, sums.data(),
+                    columns);
     }
     for (std::size_t c = 0; c < 3; ++c) {
-        slots_[c].resize(slots);
-        for (std::size_t i = 0; i < slots; ++i) slots_[c][i] = sums[i * laneGroup + c];
+        const auto from = sums.begin() + static_cast<std::ptrdiff_t>(c * columns);
+        values_.insert(values_.end(), from, from + static_cast<std::ptrdiff_t>(slots));
     }
 }
 
 Rgb BasisLight::radiance(std::span<const double> coefficients, int order, double turn) const {
     const auto slots = static_cast<std::size_t>(order) * static_cast<std::size_t>(order);
+    const std::size_t own = values_.size() / 3;
     const bool grey = coefficients.size() == slots;
     Rgb sum{};
+    const double c1 = std::cos(turn), s1 = std::sin(turn);
+    double cosine = 1, sine = 0;  // of m times the turn
     for (int m = 0; m < order; ++m) {
-        const double cosine = std::cos(m * turn), sine = std::sin(m * turn);
         for (int l = m; l < order; ++l) {
             const auto plus = static_cast<std::size_t>(slotOf(l, m));
             const auto minus = static_cast<std::size_t>(slotOf(l, -m));
             for (std::size_t c = 0; c < 3; ++c) {
                 const double* from = coefficients.data() + (grey ? 0 : c) * slots;
-                const double a = slots_[c][plus], b = slots_[c][minus];
+                const double a = values_[c * own + plus], b = values_[c * own + minus];
                 sum[c] += from[plus] * (cosine * a + (m > 0 ? sine * b : 0));
                 if (m > 0) sum[c] += from[minus] * (cosine * b - sine * a);
             }
         }
+        const double next = cosine * c1 - sine * s1;
+        sine = sine * c1 + cosine * s1;
+        cosine = next;
     }
     return sum;
 }
 
 std::vector<double> BasisLight::bandPower() const {
+    const std::size_t slots = values_.size() / 3;
     std::vector<double> power(static_cast<std::size_t>(order_), 0.0);
     for (int l = 0; l < order_; ++l) {
         for (int m = -l; m <= l; ++m) {
-            for (const auto& channel : slots_) {
-                const double value = channel[static_cast<std::size_t>(slotOf(l, m))];
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double value = values_[c * slots + static_cast<std::size_t>(slotOf(l, m))];
                 power[static_cast<std::size_t>(l)] += value * value;
             }
         }

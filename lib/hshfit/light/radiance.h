@@ -8,6 +8,7 @@
 
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace hshfit::inline light {
@@ -27,6 +28,8 @@ Radiance outgoingRadiance(const PairEvaluator& evaluator, std::size_t channels,
 class BasisLight {
 public:
     BasisLight(const Basis& basis, Quantity quantity, const LightSamples& light);
+    /// `values`: E, [R, G, B][slot].
+    BasisLight(int order, std::vector<double> values) : order_(order), values_(std::move(values)) {}
 
     /// `coefficients`: [channel][slot] at `order` bands, one channel or three; `turn` as in
     /// OutgoingLookup.
@@ -35,9 +38,12 @@ public:
     /// [l]: power of a band, sum over m and R, G, B of E^2.
     std::vector<double> bandPower() const;
 
+    /// E, [R, G, B][slot].
+    std::span<const double> values() const { return values_; }
+
 private:
     int order_;
-    std::array<std::vector<double>, 3> slots_;
+    std::vector<double> values_;
 };
 
 /// Radiance from a representation's coefficients under light in its basis, without `added`. Not for

@@ -6,6 +6,7 @@
 #include <hshfit/light/radiance.h>
 #include <hshfit/pictures/sphere_picture.h>
 #include <hshfit/rendering/internal/light_cells.h>
+#include <hshfit/rendering/internal/normal_table.h>
 
 #include <tbb/parallel_for.h>
 
@@ -13,6 +14,7 @@
 #include <atomic>
 #include <cassert>
 #include <cmath>
+#include <optional>
 
 namespace hshfit::inline rendering {
 namespace {
@@ -22,15 +24,39 @@ constexpr std::size_t blockSize = 64;
 /// Points at which levels of light samples are compared.
 constexpr std::size_t comparedPoints = 32;
 constexpr int mostSampleLevel = 6;
+/// Radiance below this share of the mean has the errors of that share.
+constexpr double darkest = 0.05;
+/// A table of normals: cells along the edge of a cube for each band of the basis.
+constexpr std::size_t cellsPerBand = 4;
+constexpr std::size_t leastParts = 64, leastPoints = 1000;
+/// Values of a table: 32 MiB.
+constexpr std::size_t mostValues = std::size_t{1} << 22;
+
+std::size_t blocksOf(const SurfacePoints& points) {
+    return (points.count() + blockSize - 1) / blockSize;
+}
+
+/// Steps done, from any thread.
+class Steps {
+public:
+    Steps(const RenderProgress& progress, std::size_t total) : progress_(progress), total_(total) {}
+    void done() {
+        const std::size_t now = ++done_;
+        if (progress_) progress_(now, total_);
+    }
+
+private:
+    const RenderProgress& progress_;
+    std::size_t total_;
+    std::atomic<std::size_t> done_ = 0;
+};
 
 /// Calls `work(first, last)` for blocks of the points, on all threads.
-void forBlocks(std::size_t count, const RenderProgress& progress,
+void forBlocks(const SurfacePoints& points, Steps& steps,
                const std::function<void(std::size_t, std::size_t)>& work) {
-    const std::size_t blocks = (count + blockSize - 1) / blockSize;
-    std::atomic<std::size_t> done = 0;
-    tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
-        work(block * blockSize, std::min(count, (block + 1) * blockSize));
-        if (progress) progress(++done, blocks);
+    tbb::parallel_for(std::size_t{0}, blocksOf(points), [&](std::size_t block) {
+        work(block * blockSize, std::min(points.count(), (block + 1) * blockSize));
+        steps.done();
     });
 }
 
@@ -52,25 +78,38 @@ class LightAbove {
 public:
     LightAbove(std::span<const Light> lights, int level) : level_(level) {
         for (const Light& light : lights) {
-            if (const auto* picture = std::get_if<PictureLight>(&light)) {
-                const auto parts = pictureSamples(*picture, 1e-3 * std::pow(1.5, -3 * level));
-                parts_.insert(parts_.end(), parts.begin(), parts.end());
-            } else {
+            const auto* picture = std::get_if<PictureLight>(&light);
+            if (!picture) {
                 others_.push_back(light);
+                continue;
+            }
+            for (const PictureSample& part :
+                 pictureSamples(*picture, 1e-3 * std::pow(1.5, -3 * level))) {
+                parts_.x.push_back(part.direction.x);
+                parts_.y.push_back(part.direction.y);
+                parts_.z.push_back(part.direction.z);
+                for (std::size_t c = 0; c < 3; ++c) parts_.flux[c].push_back(part.flux[c]);
             }
         }
     }
-    LightSamples at(const Frame& frame) const {
-        LightSamples samples = sampleLights(others_, frame, level_);
-        for (const PictureSample& part : parts_) {
-            samples.add(frame.toLocal(part.direction), part.flux, 1);
-        }
+    /// The parts of pictures alone, and the other lights.
+    LightSamples pictures(const Frame& frame) const {
+        LightSamples samples;
+        samples.addAbove(parts_, frame);
         return samples;
     }
+    LightSamples others(const Frame& frame) const { return sampleLights(others_, frame, level_); }
+    LightSamples at(const Frame& frame) const {
+        LightSamples samples = others(frame);
+        samples.addAbove(parts_, frame);
+        return samples;
+    }
+    std::size_t pictureParts() const { return parts_.count(); }
+    bool hasOthers() const { return !others_.empty(); }
 
 private:
     int level_;
-    std::vector<PictureSample> parts_;
+    LightSamples parts_;  ///< in the world
     std::vector<Light> others_;
 };
 
@@ -108,12 +147,12 @@ public:
         through_ = !transmissionSide(one.source).empty();
     }
 
-    /// [material]; returns the number of light samples.
-    std::size_t radiance(const LightAbove& light, const Direction& normal, const Direction& viewer,
-                         Rgb* out) const {
-        const auto [frame, wo] = litPoint(normal, viewer, through_);
-        const LightSamples samples = light.at(frame);
-        const BasisLight inBasis(*basis_, quantity_, samples);
+    const Basis& basis() const { return *basis_; }
+    bool through() const { return through_; }
+    BasisLight inBasis(const LightSamples& samples) const { return {*basis_, quantity_, samples}; }
+
+    /// [material]; `turn`: azimuth of the frame's tangent in the axes of `light`.
+    void shade(const BasisLight& light, const Direction& wo, double turn, Rgb* out) const {
         std::vector<double> c;
         for (std::size_t k = 0; k < materials_.size(); ++k) {
             const Coefficients& material = *materials_[k];
@@ -124,9 +163,12 @@ public:
                 const double* from = material.at(found.index[n], 0);
                 for (std::size_t i = 0; i < size; ++i) c[i] += found.weight[n] * from[i];
             }
-            out[k] = inBasis.radiance(c, material.order, found.turn);
+            out[k] = light.radiance(c, material.order, found.turn + turn);
         }
-        return samples.count();
+    }
+    /// The same with the light above the point.
+    void radiance(const LightAbove& light, const LitPoint& point, Rgb* out) const {
+        shade(inBasis(light.at(point.frame)), point.wo, 0, out);
     }
 
 private:
@@ -164,7 +206,9 @@ ChosenLight chooseLight(const CoefficientShader& shader, std::size_t materials,
     const auto shaded = [&](const LightAbove& light) {
         std::vector<Rgb> radiance(compared.size() * materials);
         tbb::parallel_for(std::size_t{0}, compared.size(), [&](std::size_t k) {
-            shader.radiance(light, points.normals[compared[k]], points.viewer(compared[k], view),
+            const std::size_t at = compared[k];
+            shader.radiance(light,
+                            litPoint(points.normals[at], points.viewer(at, view), shader.through()),
                             radiance.data() + k * materials);
         });
         return radiance;
@@ -183,16 +227,117 @@ ChosenLight chooseLight(const CoefficientShader& shader, std::size_t materials,
     return chosen;
 }
 
-double sumOf(const Rgb& value) {
-    return value[0] + value[1] + value[2];
+double absoluteSum(const Rgb& value) {
+    return std::abs(value[0]) + std::abs(value[1]) + std::abs(value[2]);
 }
+double sumOfSquares(const Rgb& value) {
+    return value[0] * value[0] + value[1] * value[1] + value[2] * value[2];
+}
+
+/// Light of pictures in the basis, by normal: a table where it takes less work than the points
+/// themselves and where, in the middle of a cell, the radiance interpolated is that of the point.
+class LightByNormal {
+public:
+    LightByNormal(const CoefficientShader& shader, const LightAbove& light, std::size_t materials,
+                  const SurfacePoints& points, const View& view)
+        : shader_(shader), light_(light), points_(points), view_(view), materials_(materials) {
+        const auto order = static_cast<std::size_t>(shader.basis().order());
+        const std::size_t values = 3 * order * order;
+        if (light.pictureParts() < leastParts || points.count() < leastPoints) return;
+        std::vector<Direction> normals(points.count());
+        for (std::size_t k = 0; k < normals.size(); ++k) normals[k] = at(k).frame.normal;
+        table_.emplace(normals, static_cast<int>(cellsPerBand * order));
+        if (2 * work() > points.count() || values * table_->vertices() > mostValues) table_.reset();
+    }
+
+    /// The steps of `prepare`.
+    std::size_t work() const { return table_ ? table_->vertices() + table_->middles().size() : 0; }
+    /// Makes the table; `tolerance` of a cell.
+    void prepare(double tolerance, Steps& steps) {
+        if (!table_) return;
+        const auto order = static_cast<std::size_t>(shader_.basis().order());
+        table_->fill(3 * order * order, [&](const Frame& frame, double* out) {
+            const BasisLight inBasis = shader_.inBasis(light_.pictures(frame));
+            std::ranges::copy(inBasis.values(), out);
+            steps.done();
+        });
+        check(tolerance, steps);
+    }
+
+    /// Relative L2 of interpolation, over the middles of the cells that serve.
+    double error() const { return error_; }
+
+    /// [material] of a point.
+    void radiance(std::size_t k, Rgb* out) const {
+        const LitPoint point = at(k);
+        if (table_ && serves_[table_->cellOf(point.frame.normal)])
+            interpolated(point, out);
+        else
+            shader_.radiance(light_, point, out);
+    }
+
+private:
+    LitPoint at(std::size_t k) const {
+        return litPoint(points_.normals[k], points_.viewer(k, view_), shader_.through());
+    }
+    void interpolated(const LitPoint& point, Rgb* out) const {
+        const int order = shader_.basis().order();
+        std::vector<double> values(3 * static_cast<std::size_t>(order * order));
+        const double turn = table_->interpolate(point.frame.normal, values);
+        shader_.shade(BasisLight(order, std::move(values)), point.wo, turn, out);
+        if (!light_.hasOthers()) return;
+        std::vector<Rgb> others(materials_);
+        shader_.shade(shader_.inBasis(light_.others(point.frame)), point.wo, 0, others.data());
+        for (std::size_t m = 0; m < materials_; ++m) {
+            for (std::size_t c = 0; c < 3; ++c) out[m][c] += others[m][c];
+        }
+    }
+
+    void check(double tolerance, Steps& steps) {
+        const std::span<const std::size_t> middles = table_->middles();
+        const std::size_t count = middles.size() * materials_;
+        std::vector<Rgb> exactly(count), nearly(count);
+        tbb::parallel_for(std::size_t{0}, middles.size(), [&](std::size_t k) {
+            const LitPoint point = at(middles[k]);
+            shader_.radiance(light_, point, exactly.data() + k * materials_);
+            interpolated(point, nearly.data() + k * materials_);
+            steps.done();
+        });
+        std::vector<double> floors(materials_, 0.0);
+        for (std::size_t i = 0; i < count; ++i) {
+            floors[i % materials_] +=
+                darkest * absoluteSum(exactly[i]) / static_cast<double>(middles.size());
+        }
+        serves_.assign(middles.size(), 1);
+        double squared = 0, reference = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const Rgb& exact = exactly[i];
+            const Rgb gap = {nearly[i][0] - exact[0], nearly[i][1] - exact[1],
+                             nearly[i][2] - exact[2]};
+            reference += sumOfSquares(exact);
+            if (absoluteSum(gap) > tolerance * std::max(absoluteSum(exact), floors[i % materials_]))
+                serves_[i / materials_] = 0;
+            else
+                squared += sumOfSquares(gap);
+        }
+        error_ = reference > 0 ? std::sqrt(squared / reference) : 0;
+    }
+
+    const CoefficientShader& shader_;
+    const LightAbove& light_;
+    const SurfacePoints& points_;
+    const View& view_;
+    const std::size_t materials_;
+    std::optional<NormalTable> table_;
+    std::vector<char> serves_;  ///< by cell
+    double error_ = 0;
+};
 
 /// The errors of pixels from those of their points.
 void addPixelErrors(const SurfacePoints& points, const std::vector<PointRadiance>& facts,
                     LitPicture& result) {
-    constexpr double darkest = 0.05;
     double mean = 0;
-    for (const PointRadiance& fact : facts) mean += std::abs(sumOf(fact.radiance));
+    for (const PointRadiance& fact : facts) mean += absoluteSum(fact.radiance);
     mean /= std::max<double>(1, static_cast<double>(facts.size()));
     std::vector<float>& errors = result.picture.error;
     errors.assign(points.coverage.size(), 0.0F);
@@ -201,7 +346,7 @@ void addPixelErrors(const SurfacePoints& points, const std::vector<PointRadiance
         double error = 0, radiance = 0;
         for (std::size_t k = first; k < last; ++k) {
             error += facts[k].error;
-            radiance += std::abs(sumOf(facts[k].radiance));
+            radiance += absoluteSum(facts[k].radiance);
         }
         const double scale = std::max(radiance, darkest * mean * static_cast<double>(last - first));
         if (!(scale > 0)) continue;
@@ -221,7 +366,8 @@ LitPicture renderByIntegration(const Brdf& brdf, const SurfacePoints& points, co
     Radiance radiance(points.count());
     std::vector<PointRadiance> facts(points.count());
     const bool through = transmits(brdf);
-    forBlocks(points.count(), progress, [&](std::size_t first, std::size_t last) {
+    Steps steps(progress, blocksOf(points));
+    forBlocks(points, steps, [&](std::size_t first, std::size_t last) {
         for (std::size_t k = first; k < last; ++k) {
             const LitPoint at = litPoint(points.normals[k], points.viewer(k, view), through);
             facts[k] = light.at(brdf, at.frame, at.wo, options);
@@ -253,23 +399,21 @@ std::vector<LitPicture> renderByCoefficients(std::span<const Coefficients* const
     const std::vector<Light> pictured = withoutCostlySkies(lights);
     const ChosenLight chosen =
         chooseLight(shader, materials.size(), points, view, pictured, options.tolerance);
+    LightByNormal byNormal(shader, chosen.light, materials.size(), points, view);
+    Steps steps(options.progress, byNormal.work() + blocksOf(points));
+    byNormal.prepare(options.tolerance / 4, steps);
     std::vector<Radiance> radiance(materials.size(), Radiance(points.count()));
-    std::vector<std::size_t> samples(points.count());
-    forBlocks(points.count(), options.progress, [&](std::size_t first, std::size_t last) {
+    forBlocks(points, steps, [&](std::size_t first, std::size_t last) {
         std::vector<Rgb> at(materials.size());
         for (std::size_t k = first; k < last; ++k) {
-            samples[k] =
-                shader.radiance(chosen.light, points.normals[k], points.viewer(k, view), at.data());
+            byNormal.radiance(k, at.data());
             for (std::size_t i = 0; i < at.size(); ++i) radiance[i][k] = at[i];
         }
     });
-    double mean = 0;
-    for (const std::size_t count : samples) mean += static_cast<double>(count);
-    mean /= std::max<double>(1, static_cast<double>(points.count()));
     std::vector<LitPicture> results;
     for (const Radiance& one : radiance) {
-        results.push_back(
-            {.picture = pictureOf(points, one), .error = chosen.error, .evaluations = mean});
+        results.push_back({.picture = pictureOf(points, one),
+                           .error = std::hypot(chosen.error, byNormal.error())});
     }
     return results;
 }

@@ -21,7 +21,7 @@ struct LitPicture {
     SpherePicture picture;
     /// Estimated relative error, the root of the mean square over the points. By integration an
     /// upper estimate of the quadrature; by coefficients the change from one level of light samples
-    /// to the next, for the given coefficients.
+    /// to the next, for the given coefficients, and the error of a table of normals.
     double error = 0;
     /// By integration, the largest estimated error of a pixel, over its radiance or, if that is
     /// more, a twentieth of the picture's mean; `picture.error` has that of every pixel.
@@ -31,7 +31,7 @@ struct LitPicture {
     };
     Largest largest = {};
     std::size_t cut = 0;     ///< points at which integration was ended by its bound of evaluations
-    double evaluations = 0;  ///< of f or of light samples in the basis, the mean over points
+    double evaluations = 0;  ///< of f by integration, the mean over points
 };
 
 /// Radiance of a surface by direct integration (direct_integral.h) at every point. `brdf` is grey
@@ -52,7 +52,9 @@ struct CoefficientShading {
 ///     L(wo) = sum over l, m of c_{l,m}(wo) E_{l,m},   E = integral of L_i B_{l,m} w d omega_i
 /// over the hemisphere about each point's normal, with w = cos(theta_i) for coefficients of f and 1
 /// for those of f cos(theta_i). E is made of samples of the lights above each normal, not of
-/// rotated coefficients; c is interpolated in the materials' outgoing sets. All materials share
+/// rotated coefficients; where there are many points, E of pictures is interpolated between normals
+/// a few degrees apart, but for cells where that changes radiance by more than a quarter of the
+/// tolerance. c is interpolated in the materials' outgoing sets. All materials share
 /// basis, order, sign and quantity, are grey or RGB, and are all reflections or all transmissions.
 /// Values below 0 are kept. The pictures do not depend on the number of threads.
 std::vector<LitPicture> renderByCoefficients(std::span<const Coefficients* const> materials,

@@ -2,6 +2,7 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/light/catalog.h>
+#include <hshfit/light/picture_light.h>
 #include <hshfit/pictures/sphere_picture.h>
 #include <hshfit/projection/projection.h>
 #include <hshfit/quadrature/quadrature.h>
@@ -219,6 +220,49 @@ TEST(LitPicture, CoefficientsOfHighOrderConvergeToIntegration) {
     EXPECT_LT(before, 0.01);
 }
 
+/// The radiance of a white surface under the middles of the pixels.
+double whiteRadiance(const PictureLight& light, const Direction& normal) {
+    const PictureGeometry geometry = geometryOf(light);
+    double sum = 0;
+    for (std::size_t row = 0; row < light.height; ++row) {
+        for (std::size_t column = 0; column < light.width; ++column) {
+            const Direction d = directionOf(light, static_cast<double>(column) + 0.5,
+                                            static_cast<double>(row) + 0.5);
+            sum += light.rgb[3 * (row * light.width + column)] * geometry.solidAngle(column, row) *
+                   std::max(0.0, dot(normal, d));
+        }
+    }
+    return sum / pi;
+}
+
+// So many points that their normals share a table; a lamp of one pixel sets over some of them.
+TEST(LitPicture, ManyPointsUnderAPictureHaveTheirOwnRadiance) {
+    std::vector<Light> lights = checkeredPicture();
+    auto& picture = std::get<PictureLight>(lights[0]);
+    for (std::size_t c = 0; c < 3; ++c) picture.rgb[3 * (9 * picture.width + 20) + c] = 3000;
+    const Coefficients white = projected(lambert(1), "hsh", 3, "8");
+    const Coefficients* const one[] = {&white};
+    const SurfacePoints points = spherePoints(view(), 128, 1);
+    // At that tolerance each pixel is a sample.
+    const double tolerance = 1e-5;
+    const LitPicture lit =
+        renderByCoefficients(one, points, view(), lights, {.tolerance = tolerance})[0];
+    EXPECT_LT(lit.error, tolerance);
+    EXPECT_GT(lit.error, 0) << "from the table alone";
+    double mean = 0, largest = 0;
+    for (std::size_t k = 0; k < points.count(); k += 7) {
+        const double exact = whiteRadiance(picture, points.normals[k]);
+        mean += exact * 7 / static_cast<double>(points.count());
+    }
+    for (std::size_t pixel = 0; pixel < points.coverage.size(); pixel += 5) {
+        if (points.coverage[pixel] == 0) continue;
+        const double exact = whiteRadiance(picture, points.normals[points.first[pixel]]);
+        largest = std::max(largest, std::abs(lit.picture.radiance[3 * pixel] - exact) /
+                                        std::max(exact, mean / 20));
+    }
+    EXPECT_LT(largest, 10 * tolerance);
+}
+
 TEST(LitPicture, AMeshOfASphereIsTheSphere) {
     const auto brdf = brdfs::open("ggx:alpha=.3,F0=.5,kd=.3");
     const std::vector<Light> lights = {
@@ -243,15 +287,20 @@ TEST(LitPicture, AMeshOfASphereIsTheSphere) {
 TEST(LitPicture, PicturesDoNotDependOnTheNumberOfThreads) {
     const auto brdf = brdfs::open("ggx:alpha=.2");
     const std::vector<Light> lights = checkeredPicture();
-    const Coefficients c = projected(*brdf, "hsh", 6, "16");
-    std::vector<float> radiance[2][2];
+    const Coefficients c = projected(*brdf, "hsh", 6, "16"), few = projected(*brdf, "hsh", 3, "16");
+    const Coefficients* const one[] = {&few};
+    const SurfacePoints many = spherePoints(view(), 128, 1);  // share a table of normals
+    std::vector<float> radiance[2][3];
     for (const std::size_t threads : {1, 3}) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
         radiance[threads / 2][0] = integrated(*brdf, lights).picture.radiance;
         radiance[threads / 2][1] = byCoefficients(c, lights).picture.radiance;
+        radiance[threads / 2][2] =
+            renderByCoefficients(one, many, view(), lights)[0].picture.radiance;
     }
     EXPECT_EQ(radiance[0][0], radiance[1][0]);
     EXPECT_EQ(radiance[0][1], radiance[1][1]);
+    EXPECT_EQ(radiance[0][2], radiance[1][2]);
 }
 
 TEST(LitPicture, TheDifferenceNamesItsPlace) {
