@@ -38,6 +38,15 @@ bool has(const std::vector<std::string>& parts, std::string_view name) {
     return std::ranges::find(parts, name) != parts.end();
 }
 
+/// The name of the parameter that a fit states to add a part, or "".
+std::string_view statedKeyOf(const ModelPart& part) {
+    return part.with.substr(0, std::min(part.with.find('='), part.with.size()));
+}
+
+std::string extended(const std::string& spec, std::string_view more) {
+    return fmt::format("{}{}{}", spec, spec.find(':') == spec.npos ? ':' : ',', more);
+}
+
 /// Whether a fit would move any parameter of a part.
 bool isFree(const Model& model, const ModelPart& part, const Parameters& stated, bool isotropic) {
     const std::vector<FreeParameter> free = freeParameters(model, stated, isotropic, false);
@@ -52,23 +61,86 @@ struct TriedParts {
     PartTrial trial = {};
     FitOptions options = {};
     FitResult result = {};
+    std::string stated = {};  ///< PartSearch::stated, of the part that is new
 };
+
+std::pair<bool, double> lessOf(const TriedParts& own) {
+    return {!own.trial.failure.empty(), own.trial.loss};
+}
+
+/// The share of the squared residuals that differs between the channels.
+double colouredShare(const FitSamples& samples, const FitResult& result, Loss::Kind loss) {
+    const std::vector<double> model = predictedValues(result, samples);
+    const std::size_t count = samples.size(), channels = samples.channels.count();
+    double whole = 0, coloured = 0;
+    std::vector<double> r(channels);
+    for (std::size_t k = 0; k < count; ++k) {
+        double mean = 0;
+        for (std::size_t c = 0; c < channels; ++c) {
+            const std::size_t v = c * count + k;
+            r[c] = std::sqrt(samples.weight(c, k)) *
+                   (mapValue(loss, model[v], samples.wiZ[k]).value -
+                    mapValue(loss, samples.values[v], samples.wiZ[k]).value);
+            mean += r[c] / static_cast<double>(channels);
+        }
+        for (const double own : r) whole += own * own, coloured += (own - mean) * (own - mean);
+    }
+    return whole > 0 ? coloured / whole : 0;
+}
 
 /// Fits of a model with some of its parts.
 class Trials {
 public:
-    Trials(const FitSamples& samples, const FitOptions& fit, const PartOptions& options,
-           std::size_t most)
-        : samples_(samples), fit_(fit), options_(options), most_(most) {}
+    Trials(const Model& model, const FitSamples& samples, const FitOptions& fit,
+           const PartOptions& options, std::size_t most)
+        : model_(model),
+          samples_(samples),
+          fit_(fit),
+          options_(options),
+          base_(fit.model),
+          most_(most) {}
 
     /// To all samples. `before`: a fit with fewer parts, of which the shapes start where it ended.
     TriedParts fitted(std::vector<std::string> parts, const TriedParts* before) {
-        const std::string model = withParts(fit_.model, parts);
+        const std::string model = withParts(base_, parts);
         return fitted(std::move(parts), model, before);
     }
 
-    /// The same of a model that holds more.
-    TriedParts fitted(std::vector<std::string> parts, std::string model, const TriedParts* before) {
+    /// With one part more; of a film the best of some shares of the facets that it covers, from as
+    /// many thicknesses as a fit has starts if it lowers the loss at all.
+    TriedParts added(const std::string& name, const TriedParts& before) {
+        std::vector<std::string> parts = before.trial.parts;
+        parts.push_back(name);
+        const std::string_view key = statedKeyOf(partNamed(model_, name));
+        if (key.empty()) return fitted(std::move(parts), &before);
+        const auto covering = [&](double share, int starts) {
+            const std::string stated = fmt::format("{}={}", key, share);
+            TriedParts own =
+                fitted(parts, withParts(extended(base_, stated), parts), &before, starts);
+            own.stated = stated;
+            return own;
+        };
+        TriedParts best;
+        double bestShare = 0;
+        for (const double share : {0.5, 1., 0.25}) {
+            TriedParts own = covering(share, std::max(1, fit_.starts / 4));
+            if (bestShare == 0 || lessOf(own) < lessOf(best))
+                best = std::move(own), bestShare = share;
+        }
+        if (!best.trial.failure.empty() ||
+            best.trial.loss > (1 - options_.leastGain) * before.trial.loss)
+            return best;
+        TriedParts own = covering(bestShare, fit_.starts);
+        return lessOf(own) < lessOf(best) ? own : best;
+    }
+    /// Later fits have the film of this one.
+    void goOnFrom(const TriedParts& taken) {
+        if (!taken.stated.empty()) base_ = extended(base_, taken.stated);
+    }
+
+    /// A fit of a model that holds more than the parts say.
+    TriedParts fitted(std::vector<std::string> parts, std::string model, const TriedParts* before,
+                      int starts = 0) {
         TriedParts own;
         own.trial.parts = std::move(parts);
         own.options = fit_;
@@ -76,7 +148,7 @@ public:
         own.options.progress = {};
         own.options.uncertainty = {};
         own.options.contributions.clear();
-        own.options.starts = std::max(1, fit_.starts / 4);
+        own.options.starts = starts > 0 ? starts : std::max(1, fit_.starts / 4);
         // Along a level valley a search goes on for long after the held-out error has settled.
         own.options.iterations = std::min(fit_.iterations, 30);
         own.options.brief = true;
@@ -100,6 +172,13 @@ public:
         }
     }
 
+    /// Whether a part may lower the loss of a fit by more than chance.
+    bool worthTrying(const std::string& name, const TriedParts& current) const {
+        return partNamed(model_, name).with.empty() ||
+               (samples_.origin == SampleOrigin::pixels &&
+                colouredShare(samples_, current.result, fit_.loss) >= options_.leastColoured);
+    }
+
 private:
     /// Values of the shapes by which models with and without a part are told, NaN for new ones.
     std::vector<double> startOf(const FitOptions& own, const TriedParts& before) const {
@@ -119,9 +198,11 @@ private:
         return from;
     }
 
+    const Model& model_;
     const FitSamples& samples_;
     const FitOptions& fit_;
     const PartOptions& options_;
+    std::string base_;  ///< the model, with a film where one was taken
     std::size_t most_, done_ = 0;
 };
 
@@ -133,8 +214,7 @@ std::string outcomeOf(const PartTrial& trial) {
 }
 
 std::string holding(const std::string& spec, const HeldParameter& held) {
-    return fmt::format("{}{}{}={}", spec, spec.find(':') == spec.npos ? ':' : ',', held.name,
-                       held.value);
+    return extended(spec, fmt::format("{}={}", held.name, held.value));
 }
 
 /// The parameters of the parts of a fit, then those of the base but its colours, which are never
@@ -155,9 +235,9 @@ std::vector<std::string_view> heldInTurn(const Model& model,
 }
 
 /// The parameters of a fit that may stay at their defaults, one after another, with a loss of
-/// `most`.
+/// `most`; the fit becomes that with them.
 std::vector<HeldParameter> undecided(const Model& model, const FitSamples& samples, Trials& trials,
-                                     TriedParts current, double most) {
+                                     TriedParts& current, double most) {
     std::vector<HeldParameter> held;
     for (const std::string_view key : heldInTurn(model, current.trial.parts)) {
         const Parameters stated = statedIn(current.options.model, model);
@@ -175,6 +255,19 @@ std::vector<HeldParameter> undecided(const Model& model, const FitSamples& sampl
     return held;
 }
 
+/// The parts of which a fit would move a parameter, and that are not there already.
+std::vector<std::string> openParts(const Model& model, const std::string& spec,
+                                   const FitSamples& samples) {
+    std::vector<std::string> open;
+    for (const std::string& name : partsFor(model, samples.channels)) {
+        const ModelPart& part = partNamed(model, name);
+        if (statedIn(spec, model).given(statedKeyOf(part))) continue;
+        const std::string with = part.with.empty() ? spec : withParts(spec, {name});
+        if (isFree(model, part, statedIn(with, model), samples.isotropic)) open.push_back(name);
+    }
+    return open;
+}
+
 }  // namespace
 
 const Model* modelWithParts(std::string_view spec) {
@@ -189,19 +282,31 @@ std::string withParts(std::string_view spec, const std::vector<std::string>& par
     const Parameters stated = statedIn(spec, *model);
     std::string result(spec);
     for (const ModelPart& part : model->parts) {
-        if (has(parts, part.name)) continue;
+        const std::string_view own = statedKeyOf(part);
+        if (has(parts, part.name) && !own.empty() && !stated.given(own))
+            result = extended(result, part.with);
+        if (has(parts, part.name) || !own.empty()) continue;
         for (const std::string_view key : part.parameters) {
             if (stated.given(key)) continue;
             const auto row = std::ranges::find(model->parameters, key, &Parameter::name);
-            result += fmt::format("{}{}={}", result.find(':') == result.npos ? ':' : ',', key,
-                                  *row->fallback);
+            result = extended(result, fmt::format("{}={}", key, *row->fallback));
         }
     }
     return result;
 }
 
+std::vector<std::string> partsFor(const Model& model, const Channels& channels) {
+    std::vector<std::string> names;
+    for (const ModelPart& part : model.parts)
+        if (part.with.empty() || channels.kind == Channels::Kind::rgb)
+            names.emplace_back(part.name);
+    return names;
+}
+
 std::string withParts(std::string_view spec, const PartSearch& search) {
-    std::string result = withParts(spec, search.parts);
+    const std::string base(spec);
+    std::string result =
+        withParts(search.stated.empty() ? base : extended(base, search.stated), search.parts);
     for (const HeldParameter& held : search.held) result = holding(result, held);
     return result;
 }
@@ -212,47 +317,48 @@ PartSearch chooseParts(const FitSamples& all, const FitOptions& fit, const PartO
     const FitSamples samples = all.fewer                      ? *all.fewer
                                : all.size() > options.samples ? all.drawn(options.samples, fit.seed)
                                                               : all;
-    const Parameters stated = statedIn(fit.model, *model);
-    std::vector<std::string> open;
-    for (const ModelPart& part : model->parts)
-        if (isFree(*model, part, stated, samples.isotropic)) open.emplace_back(part.name);
-    Trials trials(samples, fit, options, 1 + open.size() * (open.size() + 1) / 2);
+    std::vector<std::string> open = openParts(*model, fit.model, samples);
+    Trials trials(*model, samples, fit, options, 1 + open.size() * (open.size() + 1) / 2);
     PartSearch search;
     // Pixels are without noise, and hundreds for each parameter.
     const bool pixels = samples.origin == SampleOrigin::pixels;
-    const double unseen = pixels ? options.unseen : 0;
+    const double unseen = pixels ? options.unseen : 0, least = 1 - options.leastGain;
     TriedParts current = trials.fitted({}, nullptr);
     if (!pixels) trials.holdOut(current);
     current.trial.taken = true;
     search.trials.push_back(current.trial);
-    while (current.trial.failure.empty() && !open.empty() && current.trial.loss > unseen) {
+    const auto isWorthIt = [&](TriedParts& own) {
+        if (!own.trial.failure.empty() || own.trial.loss > least * current.trial.loss) return false;
+        if (!pixels) trials.holdOut(own);
+        own.trial.taken =
+            pixels || (own.trial.heldOut && *own.trial.heldOut <= least * *current.trial.heldOut);
+        return own.trial.taken;
+    };
+    // Films last: they are tried where the others leave colours that change with the directions.
+    for (bool films = false; current.trial.failure.empty() && current.trial.loss > unseen;) {
         std::vector<TriedParts> wider;
-        for (const std::string& name : open) {
-            std::vector<std::string> parts = search.parts;
-            parts.push_back(name);
-            wider.push_back(trials.fitted(std::move(parts), &current));
-        }
-        std::ranges::stable_sort(wider, {}, [](const TriedParts& own) {
-            return std::pair(!own.trial.failure.empty(), own.trial.loss);
-        });
-        const double least = 1 - options.leastGain;
-        const auto taken = std::ranges::find_if(wider, [&](TriedParts& own) {
-            if (!own.trial.failure.empty() || own.trial.loss > least * current.trial.loss)
-                return false;
-            if (!pixels) trials.holdOut(own);
-            own.trial.taken = pixels || (own.trial.heldOut &&
-                                         *own.trial.heldOut <= least * *current.trial.heldOut);
-            return own.trial.taken;
-        });
+        for (const std::string& name : open)
+            if (partNamed(*model, name).with.empty() != films && trials.worthTrying(name, current))
+                wider.push_back(trials.added(name, current));
+        std::ranges::stable_sort(wider, {}, lessOf);
+        const auto taken = std::ranges::find_if(wider, isWorthIt);
         for (const TriedParts& own : wider) search.trials.push_back(own.trial);
-        if (taken == wider.end()) break;
+        if (taken == wider.end()) {
+            if (films) break;
+            films = true;
+            continue;
+        }
         current = std::move(*taken);
+        trials.goOnFrom(current);
         search.parts = current.trial.parts;
+        if (!current.stated.empty()) search.stated = current.stated;
         std::erase(open, search.parts.back());
+        films = false;
     }
-    if (current.trial.failure.empty())
-        search.held = undecided(*model, samples, trials, current,
-                                std::max(current.trial.loss / (1 - options.leastGain), unseen));
+    if (!current.trial.failure.empty()) return search;
+    search.held =
+        undecided(*model, samples, trials, current, std::max(current.trial.loss / least, unseen));
+    if (!search.stated.empty()) search.from = shapesOf(current.result, current.options, samples);
     return search;
 }
 

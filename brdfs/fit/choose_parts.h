@@ -12,12 +12,16 @@
 namespace hshfit::brdfs {
 
 /// A specification of a fit with the optional parts of its model that are named: parameters of
-/// the other parts are stated with their defaults, unless they are stated already. Throws
-/// UsageError for a model without parts, a sum, and unknown names.
+/// the other parts are stated with their defaults, unless they are stated already, and a part with
+/// a statement of its own (ModelPart::with) is added by that. Throws UsageError for a model without
+/// parts, a sum, and unknown names.
 std::string withParts(std::string_view spec, const std::vector<std::string>& parts);
 
 /// The row of the model of a specification that is no sum, if it has parts; else null.
 const Model* modelWithParts(std::string_view spec);
+
+/// The names of all parts that data with such channels may have: a thin film needs R, G and B.
+std::vector<std::string> partsFor(const Model& model, const Channels& channels);
 
 /// One step of a search for parts.
 struct PartTrial {
@@ -41,6 +45,9 @@ struct PartSearch {
     std::vector<std::string> parts;        ///< found worth it
     std::vector<PartTrial> trials;         ///< the first has no parts
     std::vector<HeldParameter> held = {};  ///< of these parts and the base
+    std::string stated = {};               ///< of a film: the share of the facets, "key=value"
+    /// With a film, FitOptions::from for the fit that follows; its other minima are many.
+    std::vector<double> from = {};
 };
 
 /// withParts for what a search has found, with the parameters that it holds.
@@ -52,6 +59,10 @@ struct PartOptions {
     double leastGain = 0.02;
     /// Of pixels: a loss that nobody sees, a twentieth of a unit of L*, is no reason for a part.
     double unseen = 5e-4;
+    /// Of pixels, a thin film is tried where so much of the squared residuals differs between R, G
+    /// and B: other parts have no colours that change with the directions. Of other samples, whose
+    /// noise differs between channels, it is not.
+    double leastColoured = 0.25;
     /// Samples that the search draws, of others than pixels, which have FitSamples::fewer; the fit
     /// that follows takes all.
     std::size_t samples = 4096;
@@ -60,9 +71,10 @@ struct PartOptions {
 
 /// Adds the part that lowers the loss most among those that lower the held-out loss
 /// (compare_models.h), or of pixels the loss itself, by `leastGain`, again and again. Each fit
-/// starts at the one without the part. Parts whose parameters are all held or stated are not tried.
-/// Then each parameter but the base's colours is held at its default unless it lowers the loss by
-/// `leastGain`: the data do not decide it.
+/// starts at the one without the part, a film's at as many thicknesses as `fit` has starts. Parts
+/// whose parameters are all held or stated are not tried. Then each parameter but the base's
+/// colours is held at its default unless it lowers the loss by `leastGain`: the data do not decide
+/// it.
 PartSearch chooseParts(const FitSamples& samples, const FitOptions& fit,
                        const PartOptions& options = {});
 

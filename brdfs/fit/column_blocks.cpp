@@ -28,15 +28,19 @@ void evalRuns(const PairPlaces& pairs, const Columns& columns, double* out) {
 }  // namespace
 
 ColumnBlocks::ColumnBlocks(const FitSamples& samples, const ParametricSum& sum,
-                           std::span<const double> u, bool derivatives)
-    : samples_(samples), count_(1 + sum.linears().size()) {
+                           std::span<const double> u, bool derivatives, std::size_t channel,
+                           std::vector<double> linears)
+    : samples_(samples), linears_(std::move(linears)), count_(1 + sum.linears().size()) {
     const std::vector<ShapeParameter>& shapes = sum.shapes();
     std::vector<double> values;
     for (std::size_t j = 0; j < shapes.size(); ++j) values.push_back(shapes[j].toValue(u[j]));
     std::size_t firstLinear = 1;
     for (std::size_t t = 0; t < sum.termCount(); ++t) {
         Term term;
-        term.formula = sum.formulaColumns(t, values, derivatives);
+        term.channelwise = sum.channelwise(t);
+        term.formula = term.channelwise
+                           ? sum.channelColumns(t, channel, values, linears_, derivatives)
+                           : sum.formulaColumns(t, values, derivatives);
         term.linears = sum.linearsOfTerm(t).size();
         term.firstLinear = firstLinear;
         term.firstSlope = count_;
@@ -73,7 +77,9 @@ void ColumnBlocks::fill(std::size_t begin, std::size_t size, double* out) const 
 void ColumnBlocks::fillPairs(const PairPlaces& pairs, double* out) const {
     std::fill_n(out, pairs.count, 0.0);
     for (const Term& term : terms_) {
-        if (term.formula)
+        if (term.channelwise)
+            fillLinearised(term, pairs, out);
+        else if (term.formula)
             fillByFormula(term, pairs, out);
         else
             fillByDifferences(term, pairs, out);
@@ -133,6 +139,25 @@ void ColumnBlocks::fillByFormula(const Term& term, const PairPlaces& pairs, doub
     const std::size_t rows = (1 + term.linears) * size;
     for (std::size_t j = 0; j < term.slopes.size(); ++j)
         for (std::size_t k = 0; k < rows; ++k) slopes[j * rows + k] *= term.slopes[j];
+}
+
+void ColumnBlocks::fillLinearised(const Term& term, const PairPlaces& pairs, double* out) const {
+    const std::size_t size = pairs.count, shapes = term.slopes.size(), rows = 1 + term.linears;
+    std::vector<double> f(size, 0.0), slopes((shapes + term.linears) * size);
+    term.formula->fill({.wi = {pairs.x, pairs.y, pairs.z, size}, .wo = pairs.wo}, f.data(), nullptr,
+                       slopes.data());
+    for (std::size_t j = 0; j < shapes; ++j) {
+        double* to = out + (term.firstSlope + j * rows) * size;
+        for (std::size_t k = 0; k < size; ++k) to[k] = term.slopes[j] * slopes[j * size + k];
+        std::fill_n(to + size, term.linears * size, 0.0);
+    }
+    for (std::size_t i = 0; i < term.linears; ++i) {
+        const double* slope = slopes.data() + (shapes + i) * size;
+        const double about = linears_[term.firstLinear - 1 + i];
+        std::copy_n(slope, size, out + (term.firstLinear + i) * size);
+        for (std::size_t k = 0; k < size; ++k) f[k] -= about * slope[k];
+    }
+    for (std::size_t k = 0; k < size; ++k) out[k] += f[k];
 }
 
 void ColumnBlocks::fillByDifferences(const Term& term, const PairPlaces& pairs, double* out) const {

@@ -284,7 +284,8 @@ FittedPoint pointOf(const std::vector<Part>& parts, const ParametricSum& sum,
             for (std::size_t j = 0; j < count; ++j)
                 point.covariance[(first + i) * n + first + j] = part.covariance[i * count + j];
         for (std::size_t c = 0; c < channels; ++c) {
-            FittedChannel channel{sum.spec(), valuesOfChannel(all, shapes, channels, c), {}};
+            FittedChannel channel{
+                sum.spec(), valuesOfChannel(all, shapes, channels, c), {}, p * channels + c};
             for (std::size_t i = 0; i < channel.values.size(); ++i)
                 channel.slopes.push_back(
                     {{first + (i < shapes ? i : shapes + (i - shapes) * channels + c), 1}});
@@ -360,11 +361,25 @@ void checkStatements(const FitSamples& samples, const FitOptions& options) {
             "uncertainties are those of a sum of squares; leave out the robust kernel");
 }
 
+void checkChannelwise(const FitSamples& samples, const FitOptions& options, bool dispersed) {
+    if (!isChannelwise(options.model)) return;
+    if (samples.channels.kind != Channels::Kind::rgb)
+        throw UsageError(fmt::format(
+            "'{}': a thin film has functions of R, G and B, and these data are {}", options.model,
+            samples.channels.kind == Channels::Kind::grey ? "grey" : "spectral; see them as RGB"));
+    if (dispersed || options.instrument.any() || options.perChannel)
+        throw UsageError(fmt::format(
+            "'{}': a thin film is fitted to R, G and B together, without laws over the wavelength "
+            "and terms of the instrument",
+            options.model));
+}
+
 }  // namespace
 
 FitResult fit(const FitSamples& samples, const FitOptions& options) {
     checkStatements(samples, options);
     const bool dispersed = !options.dispersion.empty() || namesMetals(options.model);
+    checkChannelwise(samples, options, dispersed);
     if (!options.from.empty() && (dispersed || options.instrument.any()))
         throw UsageError(
             "values to start from are for fits without laws over the wavelength, metals and terms "

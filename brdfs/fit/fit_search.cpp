@@ -85,14 +85,15 @@ public:
     /// From shapes: eliminated if that is the loss itself, else jointly, from the linear parameters
     /// that elimination gives and from those at its minimum, whichever leads further.
     Minimum fromShapes(const std::vector<double>& u, const MinimiseOptions& options) const {
-        Minimum minimum = eliminated(u, options);
-        if (linear_) return minimum;
-        minimum = fromAll(minimum, options);
+        if (linear_) return eliminated(u, options);
         Minimum direct;
         std::vector<double> best;
         problem_.eliminated(u, false, best);
         direct.x = withLinear(u, best);
         direct = fromAll(direct, options);
+        // Functions of each channel are not linear in what elimination removes.
+        if (problem_.sum().channelwise()) return direct;
+        Minimum minimum = fromAll(eliminated(u, options), options);
         return byCost(direct, minimum) ? direct : minimum;
     }
 
@@ -196,7 +197,9 @@ std::vector<Minimum> coarseMinima(const FitProblem& problem, bool linear,
     const std::size_t shapes = problem.shapeCount();
     const bool known = !options.from.empty() && std::ranges::none_of(options.from, isNan);
     const bool one = shapes == 0 || known;
-    const std::size_t starts = one ? 1 : static_cast<std::size_t>(options.starts);
+    // The loss goes up and down with the thickness of a film.
+    const std::size_t more = problem.sum().channelwise() && options.from.empty() ? 4 : 1;
+    const std::size_t starts = one ? 1 : more * static_cast<std::size_t>(options.starts);
     std::vector<std::vector<double>> places =
         startsOf(problem.sum(), one ? 1 : 4 * starts, options.seed);
     for (std::vector<double>& u : places) moveTo(options.from, problem.sum(), u);

@@ -19,6 +19,7 @@ struct FittedChannel {
     };
     /// Derivatives of each value by the coefficients of the fit, those that are not 0.
     std::vector<std::vector<Slope>> slopes;
+    std::size_t channel = 0;  ///< of the fit
 };
 
 /// The coefficients of a fit are its parameters, or those of a law over wavelength from which the

@@ -7,9 +7,11 @@
 namespace hshfit::brdfs {
 namespace {
 
-/// Whether "key=word" is what the model does, stated or by default.
+/// Whether "key=word" is what the model does, stated or by default; "key" is a number that is
+/// stated and not 0.
 bool chosen(std::string_view choice, const Model& model, const Parameters& stated) {
     const std::size_t equals = choice.find('=');
+    if (equals == choice.npos) return stated.given(choice) && stated.number(choice) != 0;
     const std::string_view key = choice.substr(0, equals);
     const auto declared = std::ranges::find(model.parameters, key, &Parameter::name);
     const auto found = stated.words.find(key);

@@ -55,26 +55,28 @@ struct Grams {
 };
 
 /// [columns and derivatives][data], weighted inner products: one matrix with the data of all
-/// channels for weights that they share, else one for each channel. `roots` of weights.
-std::vector<Matrix> gramsOf(const FitSamples& samples, const ColumnBlocks& columns,
+/// channels for weights and columns that they share, else one for each channel. `roots` of weights.
+std::vector<Matrix> gramsOf(const FitSamples& samples, const std::vector<ColumnBlocks>& columns,
                             const std::vector<std::vector<double>>& roots) {
-    const std::size_t channels = samples.channels.count(), own = channels / roots.size();
-    const auto first = static_cast<Eigen::Index>(columns.count());
+    const std::size_t groups = std::max(roots.size(), columns.size()),
+                      own = samples.channels.count() / groups;
+    const auto first = static_cast<Eigen::Index>(columns[0].count());
     const Eigen::Index rows = first + static_cast<Eigen::Index>(own);
-    const Grams zero{std::vector<Matrix>(roots.size(), Matrix::Zero(rows, rows))};
+    const Grams zero{std::vector<Matrix>(groups, Matrix::Zero(rows, rows))};
     const auto work = [&](const Block& block) {
         const auto size = static_cast<Eigen::Index>(block.size);
         Matrix filled(size, first);
-        columns.fill(block.begin, block.size, filled.data());
         Grams result = zero;
         Matrix z(size, rows);
-        for (std::size_t i = 0; i < roots.size(); ++i) {
+        for (std::size_t i = 0; i < groups; ++i) {
+            if (i < columns.size()) columns[i].fill(block.begin, block.size, filled.data());
             z.leftCols(first) = filled;
             for (std::size_t c = 0; c < own; ++c)
                 for (Eigen::Index k = 0; k < size; ++k)
                     z(k, first + static_cast<Eigen::Index>(c)) =
                         samples.value(i + c, block.begin + static_cast<std::size_t>(k));
-            const Eigen::Map<const Vector> root(roots[i].data() + block.begin, size);
+            const Eigen::Map<const Vector> root(
+                roots[std::min(i, roots.size() - 1)].data() + block.begin, size);
             z.array().colwise() *= root.array();
             addGram(z, result.matrices[i]);
         }
@@ -143,15 +145,41 @@ FitProblem::FitProblem(const FitSamples& samples, const ParametricSum& sum, Loss
 }
 
 bool FitProblem::isLinear() const {
-    return !whitening_ && (loss_ == Loss::Kind::l2 || loss_ == Loss::Kind::cosine);
+    return !whitening_ && !sum_.channelwise() &&
+           (loss_ == Loss::Kind::l2 || loss_ == Loss::Kind::cosine);
+}
+
+std::vector<ColumnBlocks> FitProblem::columnsAt(std::span<const double> u, bool derivatives,
+                                                std::span<const double> linear) const {
+    std::vector<ColumnBlocks> columns;
+    if (!sum_.channelwise()) {
+        columns.emplace_back(samples_, sum_, u, derivatives);
+        return columns;
+    }
+    for (std::size_t c = 0; c < channels(); ++c) {
+        std::vector<double> own;
+        for (std::size_t i = c; i < linear.size(); i += channels()) own.push_back(linear[i]);
+        columns.emplace_back(samples_, sum_, u, derivatives, c, std::move(own));
+    }
+    return columns;
 }
 
 Equations FitProblem::eliminated(std::span<const double> u, bool derivatives,
                                  std::vector<double>& linear) const {
-    const ColumnBlocks columns(samples_, sum_, u, derivatives);
+    linear.clear();
+    for (const LinearParameter& parameter : sum_.linears())
+        linear.insert(linear.end(), channels(),
+                      std::clamp(0.5, parameter.min, std::max(parameter.min, parameter.max)));
+    if (sum_.channelwise()) eliminatedAbout(u, false, linear);
+    return eliminatedAbout(u, derivatives, linear);
+}
+
+Equations FitProblem::eliminatedAbout(std::span<const double> u, bool derivatives,
+                                      std::vector<double>& linear) const {
+    const std::vector<ColumnBlocks> all = columnsAt(u, derivatives, linear);
+    const ColumnBlocks& columns = all[0];
     const std::size_t shapes = shapeCount(), terms = sum_.linears().size();
     const auto n = static_cast<Eigen::Index>(shapes);
-    linear.assign(linearCount(), 0.0);
     std::vector<double> lower, upper;
     for (const LinearParameter& parameter : sum_.linears()) {
         lower.push_back(parameter.min);
@@ -160,8 +188,8 @@ Equations FitProblem::eliminated(std::span<const double> u, bool derivatives,
     Matrix hessian = Matrix::Zero(n, n);
     Vector gradient = Vector::Zero(n);
     Equations result;
-    const bool shared = projectionWeights_.size() == 1;
-    const std::vector<Matrix> grams = gramsOf(samples_, columns, projectionWeights_);
+    const std::vector<Matrix> grams = gramsOf(samples_, all, projectionWeights_);
+    const bool shared = grams.size() == 1;
     for (std::size_t c = 0; c < channels(); ++c) {
         const Matrix& gram = grams[shared ? 0 : c];
         const auto data = static_cast<Eigen::Index>(columns.count() + (shared ? c : 0));
@@ -219,7 +247,9 @@ Equations FitProblem::joint(std::span<const double> x, bool derivatives,
     if (whitening_) return whitenedJoint(x, derivatives, inverse);
     const bool spread = !inverse.empty();
     const std::size_t shapes = shapeCount(), terms = sum_.linears().size();
-    const ColumnBlocks columns(samples_, sum_, x.first(shapes), derivatives);
+    const std::vector<ColumnBlocks> all =
+        columnsAt(x.first(shapes), derivatives, x.subspan(shapes));
+    const ColumnBlocks& columns = all[0];
     const auto n = static_cast<Eigen::Index>(shapes + terms);
     ChannelSums none;
     none.gram = Matrix::Zero(derivatives ? n + 1 : 1, derivatives ? n + 1 : 1);
@@ -270,9 +300,11 @@ Equations FitProblem::joint(std::span<const double> x, bool derivatives,
     };
     JointSums sums = sumOverBlocks(samples_.size(), zero, [&](const Block& block) {
         Matrix z(static_cast<Eigen::Index>(block.size), static_cast<Eigen::Index>(columns.count()));
-        columns.fill(block.begin, block.size, z.data());
         JointSums result = zero;
-        for (std::size_t c = 0; c < channels(); ++c) addChannel(block, z, c, result.channels[c]);
+        for (std::size_t c = 0; c < channels(); ++c) {
+            if (c < all.size()) all[c].fill(block.begin, block.size, z.data());
+            addChannel(block, z, c, result.channels[c]);
+        }
         return result;
     });
 
@@ -304,7 +336,8 @@ Equations FitProblem::joint(std::span<const double> x, bool derivatives,
 
 WeightedRows FitProblem::rowsAt(std::span<const double> x) const {
     const std::size_t shapes = shapeCount(), terms = sum_.linears().size(), count = samples_.size();
-    const ColumnBlocks columns(samples_, sum_, x.first(shapes), true);
+    const std::vector<ColumnBlocks> all = columnsAt(x.first(shapes), true, x.subspan(shapes));
+    const ColumnBlocks& columns = all[0];
     WeightedRows result{.samples = count, .channels = channels(), .columns = shapes + terms};
     result.slopes.resize(channels() * count * result.columns);
     result.residuals.resize(channels() * count);
@@ -313,8 +346,8 @@ WeightedRows FitProblem::rowsAt(std::span<const double> x) const {
     tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
         const Block& block = blocks[b];
         Matrix z(static_cast<Eigen::Index>(block.size), static_cast<Eigen::Index>(columns.count()));
-        columns.fill(block.begin, block.size, z.data());
         for (std::size_t c = 0; c < channels(); ++c) {
+            if (c < all.size()) all[c].fill(block.begin, block.size, z.data());
             std::vector<double> linear;
             for (std::size_t i = 0; i < terms; ++i)
                 linear.push_back(x[shapes + i * channels() + c]);
@@ -341,21 +374,22 @@ WeightedRows FitProblem::rowsAt(std::span<const double> x) const {
 
 std::vector<double> FitProblem::values(std::span<const double> x) const {
     const std::size_t shapes = shapeCount(), terms = sum_.linears().size();
-    const ColumnBlocks columns(samples_, sum_, x.first(shapes), false);
+    const std::vector<ColumnBlocks> all = columnsAt(x.first(shapes), false, x.subspan(shapes));
     const std::size_t count = samples_.size();
     std::vector<double> result(channels() * count);
     const std::vector<Block> blocks = blocksOf(count);
     tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
         const Block& block = blocks[b];
-        std::vector<double> z(columns.count() * block.size);
-        columns.fill(block.begin, block.size, z.data());
-        for (std::size_t c = 0; c < channels(); ++c)
+        std::vector<double> z(all[0].count() * block.size);
+        for (std::size_t c = 0; c < channels(); ++c) {
+            if (c < all.size()) all[c].fill(block.begin, block.size, z.data());
             for (std::size_t k = 0; k < block.size; ++k) {
                 double f = z[k];
                 for (std::size_t i = 0; i < terms; ++i)
                     f += x[shapes + i * channels() + c] * z[(1 + i) * block.size + k];
                 result[c * count + block.begin + k] = f;
             }
+        }
     });
     return result;
 }

@@ -69,7 +69,8 @@ public:
     /// By the shapes' u alone, linear parameters at their best within bounds (variable projection:
     /// Golub & Pereyra 1973, 10.1137/0710036; Kaufman's form of the matrix). `linear[k * channels
     /// + c]` receives them. For a loss that is not linear, of the problem linearised about the
-    /// measured values: its weights are multiplied by the squared slope of g there.
+    /// measured values: its weights are multiplied by the squared slope of g there. Linear
+    /// parameters of functions of each channel are those of two linearisations in turn.
     Equations eliminated(std::span<const double> u, bool derivatives,
                          std::vector<double>& linear) const;
 
@@ -90,6 +91,11 @@ public:
     std::vector<double> values(std::span<const double> x) const;
 
 private:
+    /// Columns of all channels, or of each where a term has functions of its own there.
+    std::vector<class ColumnBlocks> columnsAt(std::span<const double> u, bool derivatives,
+                                              std::span<const double> linear) const;
+    Equations eliminatedAbout(std::span<const double> u, bool derivatives,
+                              std::vector<double>& linear) const;
     WeightedRows rowsAt(std::span<const double> x) const;
     Equations whitenedJoint(std::span<const double> x, bool derivatives,
                             std::span<const double> inverse) const;

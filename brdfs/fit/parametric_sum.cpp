@@ -51,11 +51,25 @@ bool isZero(const Brdf& brdf) {
     return true;
 }
 
+bool colours(const Model& model, const Parameters& stated) {
+    return model.channelwise && model.channelwise(withDefaults(model, stated));
+}
+
 std::unique_ptr<Brdf> made(const Model& model, Parameters parameters) {
     return model.make(completed(model.name, model.parameters, std::move(parameters)));
 }
 
 }  // namespace
+
+bool isChannelwise(std::string_view spec) {
+    return std::ranges::any_of(splitModels(spec), [](const std::string& part) {
+        const std::size_t colon = part.find(':');
+        const auto found = std::ranges::find(models(), part.substr(0, colon), &Model::name);
+        return found != models().end() && found->channelwise &&
+               colours(*found, readParameters(found->name, found->parameters,
+                                              colon == part.npos ? "" : part.substr(colon + 1)));
+    });
+}
 
 double ShapeParameter::toScale(double value) const {
     return free.logarithmic ? std::log(value + offset) : value;
@@ -90,7 +104,8 @@ void Columns::eval(const Direction& wo, DirectionBatch wi, double* out) const {
     }
 }
 
-ParametricSum::ParametricSum(std::string_view spec, bool isotropic) {
+ParametricSum::ParametricSum(std::string_view spec, bool isotropic, std::size_t channel)
+    : channel_(channel) {
     const std::vector<std::string> parts = splitModels(spec);
     for (const std::string& part : parts) {
         const std::size_t colon = part.find(':');
@@ -103,7 +118,9 @@ ParametricSum::ParametricSum(std::string_view spec, bool isotropic) {
                   .linears = {},
                   .shapeKeys = {},
                   .linearKeys = {},
-                  .byFormula = model.columns != nullptr};
+                  .byFormula = model.columns != nullptr,
+                  .channelwise = false};
+        term.channelwise = colours(model, term.stated);
         checkGrey(model, term.stated);
         for (const FreeParameter& free :
              freeParameters(model, term.stated, isotropic, parts.size() > 1)) {
@@ -160,6 +177,27 @@ std::unique_ptr<ModelColumns> ParametricSum::formulaColumns(std::size_t term,
     ColumnRequest request{.values = values, .linears = own.linearKeys};
     if (derivatives) request.shapes = own.shapeKeys;
     return own.model->columns(request);
+}
+
+bool ParametricSum::channelwise() const {
+    return std::ranges::any_of(terms_, &Term::channelwise);
+}
+
+std::unique_ptr<ModelColumns> ParametricSum::channelColumns(std::size_t term, std::size_t channel,
+                                                            std::span<const double> shapes,
+                                                            std::span<const double> linears,
+                                                            bool derivatives) const {
+    const Term& own = terms_[term];
+    Parameters parameters = shaped(own, shapes);
+    std::vector<std::vector<std::string>> keys;
+    if (derivatives) keys = own.shapeKeys;
+    for (const std::size_t k : own.linears) {
+        parameters.set(linears_[k].key, {linears[k]});
+        keys.push_back({linears_[k].key});
+    }
+    const Parameters values =
+        completed(own.model->name, own.model->parameters, std::move(parameters));
+    return own.model->columns({.values = values, .shapes = keys, .channel = channel_ + channel});
 }
 
 Parameters ParametricSum::shaped(const Term& term, std::span<const double> shapes) const {

@@ -63,8 +63,9 @@ private:
 /// A sum of catalog models with free parameters, "MODEL[:key=value,…][+MODEL…]".
 class ParametricSum {
 public:
-    /// Throws UsageError as parsing does, or if nothing is free.
-    ParametricSum(std::string_view spec, bool isotropic);
+    /// Throws UsageError as parsing does, or if nothing is free. `channel`: of R, G and B that the
+    /// first one of the samples is.
+    ParametricSum(std::string_view spec, bool isotropic, std::size_t channel = 0);
 
     const std::string& spec() const { return spec_; }
     const std::vector<ShapeParameter>& shapes() const { return shapes_; }
@@ -78,6 +79,16 @@ public:
     /// Columns of one term, at values (not u) of all shapes, by its model's formula, with
     /// derivatives by its shapes if asked for. Null: by differences of Brdf::eval.
     std::unique_ptr<ModelColumns> formulaColumns(std::size_t term, std::span<const double> shapes,
+                                                 bool derivatives) const;
+    /// Whether a term has functions of its own in each channel (Model::channelwise).
+    bool channelwise(std::size_t term) const { return terms_[term].channelwise; }
+    bool channelwise() const;
+    /// f of such a term in one channel of the samples, at values of all shapes and of that
+    /// channel's linear parameters, with derivatives by its shapes if asked for, then by its linear
+    /// parameters.
+    std::unique_ptr<ModelColumns> channelColumns(std::size_t term, std::size_t channel,
+                                                 std::span<const double> shapes,
+                                                 std::span<const double> linears,
                                                  bool derivatives) const;
     bool byFormula(std::size_t term) const { return terms_[term].byFormula; }
     /// For tests: everything through Brdf::eval.
@@ -103,6 +114,7 @@ private:
         std::vector<std::vector<std::string>> shapeKeys;
         std::vector<std::string> linearKeys;
         bool byFormula = false;
+        bool channelwise = false;
     };
     /// The stated parameters, with the shapes at these values.
     Parameters shaped(const Term& term, std::span<const double> shapes) const;
@@ -117,6 +129,10 @@ private:
     std::vector<ShapeParameter> shapes_;
     std::vector<LinearParameter> linears_;
     bool scalable_ = true;
+    std::size_t channel_ = 0;
 };
+
+/// Whether a term of a specification has functions of its own in each channel.
+bool isChannelwise(std::string_view spec);
 
 }  // namespace hshfit::brdfs

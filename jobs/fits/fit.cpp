@@ -186,14 +186,50 @@ std::optional<brdfs::PartSearch> restrictParts(const FitOptions& options,
         throw UsageError(fmt::format("{}: {} is for models with optional parts", how.model,
                                      Setting{"FitOptions::parts"}));
     }
-    if (options.parts == "all") return {};
     brdfs::PartSearch search;
+    if (options.parts == "all") {
+        how.model = brdfs::withParts(how.model, brdfs::partsFor(*model, samples.channels));
+        return {};
+    }
     if (options.parts.empty() || options.parts == "auto")
         search = brdfs::chooseParts(samples, how, {.progress = listener.part("parts")});
     else if (options.parts != "none")
         search.parts = namesIn(options.parts);
     how.model = brdfs::withParts(how.model, search);
+    how.from = search.from;
     return search;
+}
+
+/// The fit with these parts. A film has to lower the loss of all samples too, of which the search
+/// saw a few, and the FLIP of pictures: else the fit is the one without.
+Fitted fitWithParts(const FitOptions& options, const brdfs::FitSamples& samples,
+                    const PictureReference* seen, brdfs::FitOptions& how,
+                    const Listener& listener) {
+    brdfs::FitOptions bare = how;
+    auto search = restrictParts(options, samples, how, listener);
+    how.progress = bare.progress = listener.part("fit");
+    how.uncertainty.progress = bare.uncertainty.progress = listener.part("errors");
+    brdfs::FitResult result = brdfs::fit(samples, how);
+    if (search && !search->stated.empty()) {
+        const std::string none = search->stated.substr(0, search->stated.find('=')) + "=0";
+        bare.model += (bare.model.find(':') == bare.model.npos ? ":" : ",") + none;
+        brdfs::PartSearch without = brdfs::chooseParts(samples, bare, {});
+        bare.model = brdfs::withParts(bare.model, without);
+        brdfs::FitResult plain = brdfs::fit(samples, bare);
+        const auto flipOf = [&](const brdfs::FitResult& own) {
+            return seen ? seen->errorOf(*brdfs::openFit(own)).flip.mean : 0;
+        };
+        if (result.loss > (1 - brdfs::PartOptions{}.leastGain) * plain.loss ||
+            flipOf(result) > flipOf(plain)) {
+            without.trials.push_back(
+                {.parts = search->parts,
+                 .loss = std::ranges::find(search->trials, search->parts, &brdfs::PartTrial::parts)
+                             ->loss,
+                 .failure = "a film that all pixels or their FLIP find no better, not taken"});
+            search = std::move(without), how = std::move(bare), result = std::move(plain);
+        }
+    }
+    return {.result = std::move(result), .search = std::move(search), .preset = {}};
 }
 
 /// Fits in place of a poor one, made in brief: a second lobe and sums of the catalog that are known
@@ -358,22 +394,17 @@ std::pair<Fitted, PreparedFiles> fitOpen(const Brdf& brdf, const std::string& da
     brdfs::FitOptions how =
         optionsOf(options, brdf, options.figures || !page.empty() || !options.certificate.empty());
     const brdfs::FitSamples samples = samplesOf(options, brdf, how.loss);
-    const auto search = restrictParts(options, samples, how, listener);
-    how.progress = listener.part("fit");
-    how.uncertainty.progress = listener.part("errors");
-    Fitted fitted{.result = brdfs::fit(samples, how), .search = search, .preset = {}};
+    std::optional<PictureReference> seen;
+    // Between scattered samples the data are a guess: pictures of that say nothing of a fit.
+    if (!brdfs::areMeasured(brdf)) seen.emplace(brdf);
+    Fitted fitted = fitWithParts(options, samples, seen ? &*seen : nullptr, how, listener);
     if (!fitted.result.converged && !options.accept) {
         throw NumericError(
             fmt::format("{}: the fit of {} did not converge ({}); {} takes it as it "
                         "is",
                         data, options.model, fitted.result.message, Setting{"FitOptions::accept"}));
     }
-    std::optional<PictureReference> seen;
-    // Between scattered samples the data are a guess: pictures of that say nothing of a fit.
-    if (!brdfs::areMeasured(brdf)) {
-        seen.emplace(brdf);
-        fitted.picture = seen->errorOf(*brdfs::openFit(fitted.result));
-    }
+    if (seen) fitted.picture = seen->errorOf(*brdfs::openFit(fitted.result));
     // Metrics are those of f, not of pixels.
     const bool pixels = samples.origin == brdfs::SampleOrigin::pixels;
     const brdfs::FitSamples ofMetrics =
