@@ -97,7 +97,8 @@ TEST(Materials, GlbRefusesNumbersThatAreNotFinite) {
                           .specular = {},
                           .sheen = {},
                           .clearcoat = {},
-                          .anisotropy = {}};
+                          .anisotropy = {},
+                          .iridescence = {}};
     material.roughness = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THROW(glbBytes(material, sphereSurface(4)), NumericError);
     material.roughness = 0.5;
