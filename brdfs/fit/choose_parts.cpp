@@ -123,7 +123,7 @@ public:
         TriedParts best;
         double bestShare = 0;
         for (const double share : {0.5, 1., 0.25}) {
-            TriedParts own = covering(share, std::max(1, fit_.starts / 4));
+            TriedParts own = covering(share, std::max(1, fit_.starts / 2));
             if (bestShare == 0 || lessOf(own) < lessOf(best))
                 best = std::move(own), bestShare = share;
         }

@@ -82,9 +82,7 @@ inline void addStandard(std::vector<Case>& grid) {
              {"", ",metallicFactor=0", ",metallicFactor=.4,baseColorFactor=.9/.5/.1",
               ",metallicFactor=0,ior=2.2,specularFactor=.6,specularColorFactor=1/.7/.2",
               ",clearcoatFactor=.8,clearcoatRoughnessFactor=.2",
-              ",metallicFactor=0,sheenColorFactor=.5/.3/.8,sheenRoughnessFactor=.4",
-              ",baseColorFactor=.9/.6/.3,iridescenceFactor=1,iridescenceThickness=350",
-              ",metallicFactor=0,iridescenceFactor=.7,iridescenceIor=2,iridescenceThickness=900"}) {
+              ",metallicFactor=0,sheenColorFactor=.5/.3/.8,sheenRoughnessFactor=.4"}) {
             const double alpha = std::max(1e-4, std::stod(roughness) * std::stod(roughness));
             grid.push_back(
                 {"gltf-pbr:roughnessFactor=" + std::string(roughness) + rest, alpha, alpha});
@@ -100,12 +98,27 @@ inline void addStandard(std::vector<Case>& grid) {
               ",base_metalness=.5,base_diffuse_roughness=.7,base_color=.9/.5/.1",
               ",specular_weight=.4,specular_ior=2.5", ",coat_weight=.7,coat_color=.9/.5/.3",
               ",fuzz_weight=.6,fuzz_color=.3/.5/1,fuzz_roughness=.3",
-              ",base_metalness=1,specular_roughness_anisotropy=.6",
-              ",base_metalness=.5,base_color=.9/.5/.1,thin_film_weight=.8,thin_film_ior=1.8"}) {
+              ",base_metalness=1,specular_roughness_anisotropy=.6"}) {
             const double alpha = std::max(1e-4, std::stod(roughness) * std::stod(roughness));
             grid.push_back(
                 {"openpbr:specular_roughness=" + std::string(roughness) + rest, alpha, alpha});
         }
+}
+
+/// Standard materials under thin films.
+inline void addFilms(std::vector<Case>& grid) {
+    for (const char* roughness : {"0", ".3", "1"}) {
+        const double alpha = std::max(1e-4, std::stod(roughness) * std::stod(roughness));
+        for (const char* rest :
+             {",baseColorFactor=.9/.6/.3,iridescenceFactor=1,iridescenceThickness=350",
+              ",metallicFactor=0,iridescenceFactor=.7,iridescenceIor=2,iridescenceThickness=900"})
+            grid.push_back(
+                {"gltf-pbr:roughnessFactor=" + std::string(roughness) + rest, alpha, alpha});
+        grid.push_back({"openpbr:specular_roughness=" + std::string(roughness) +
+                            ",base_metalness=.5,base_color=.9/.5/.1,thin_film_weight=.8,"
+                            "thin_film_ior=1.8",
+                        alpha, alpha});
+    }
 }
 
 /// Sums of models and of colours, with weights; some conserve energy, others do not.
@@ -251,6 +264,7 @@ inline std::vector<Case> modelGrid() {
     addFitted(grid);
     addScatter(grid);
     addTransmissions(grid);
+    addFilms(grid);
     return grid;
 }
 
