@@ -29,7 +29,7 @@ struct RenderArguments {
     std::string output, exposure = "auto", mesh, up = "y", by = "both", view = "75,0", outgoing;
     int size = SphereOptions{}.size, samples = 0;
     double fieldOfView = 0, dome = SphereRig{}.dome;
-    std::optional<double> tolerance;
+    std::optional<double> tolerance, seconds;
     bool cosine = false;
     /// Whether an option was given that the spheres under point lights do not have.
     bool surface = false, domeGiven = false;
@@ -148,6 +148,7 @@ jobs::RenderOptions optionsOf(const RenderArguments& arguments) {
     options.viewPhi = view[1];
     options.fieldOfView = arguments.fieldOfView;
     options.tolerance = arguments.tolerance;
+    options.seconds = arguments.seconds;
     return options;
 }
 
@@ -239,6 +240,12 @@ void addSurfaceOptions(CLI::App& command, RenderArguments& arguments) {
                     "alone, 0.5% beside coefficients)")
         ->transform(percents())
         ->check(within(jobs::bounds::pictureTolerance));
+    command
+        .add_option("--seconds", arguments.seconds,
+                    "End integration after that time with the best picture so far, after a first "
+                    "pass over all pixels to an error of 50% (default: no end)")
+        ->check(within(jobs::bounds::seconds))
+        ->each(given);
 }
 
 }  // namespace

@@ -27,9 +27,16 @@ void runTradeoff(const TradeoffArguments& arguments, Globals& globals) {
     if (arguments.output.empty() && !globals.json) {
         throw UsageError("tradeoff: give -o DIR for the files, or --json");
     }
-    const tradeoff::TradeoffOptions& measurement = arguments.options.measurement;
-    const jobs::MeasuredTradeoffs measured = jobs::measureTradeoffs(
-        arguments.specs, arguments.output, arguments.options, listenerFor(globals));
+    jobs::TradeoffOptions options = arguments.options;
+    tradeoff::TradeoffOptions& measurement = options.measurement;
+    if (!globals.quiet)
+        measurement.found = [&](const std::string& brdf, const tradeoff::Measured& form,
+                                double error) {
+            note(globals, fmt::format("{}: so far {}: {} bytes, error {:.3g}", brdf, form.options,
+                                      form.bytes, error));
+        };
+    const jobs::MeasuredTradeoffs measured =
+        jobs::measureTradeoffs(arguments.specs, arguments.output, options, listenerFor(globals));
     if (globals.json) {
         printText(tradeoffJson(measured.trades, true));
     } else if (!measured.trades.empty()) {

@@ -67,7 +67,8 @@ py::object render(const py::object& specs, const py::object& path, const py::obj
                   const py::object& bases, const py::object& orders, bool cosine,
                   const py::object& outgoing, const py::object& exposures,
                   const py::object& exposure, int size, const py::object& samples,
-                  const py::object& tolerance, const py::object& progress) {
+                  const py::object& tolerance, const py::object& seconds,
+                  const py::object& progress) {
     namespace bounds = jobs::bounds;
     const std::vector<std::string> sources = pathsOf(specs, "specs");
     const std::string output = pathOf(path, "path");
@@ -93,7 +94,7 @@ py::object render(const py::object& specs, const py::object& path, const py::obj
     // As the program chooses: any option that spheres under point lights do not have.
     const bool surface = !options.lights.empty() || !mesh.is_none() || !view.is_none() ||
                          !fieldOfView.is_none() || !by.is_none() || !bases.is_none() ||
-                         !orders.is_none() || !exposures.is_none();
+                         !orders.is_none() || !exposures.is_none() || !seconds.is_none();
     if (!surface) {
         sheet.rig = options.rig;
         watched(progress, {}, [&](const jobs::Listener& listener) {
@@ -112,6 +113,8 @@ py::object render(const py::object& specs, const py::object& path, const py::obj
     options.outgoing = outgoingText(outgoing);
     options.tolerance = optionalNumber(tolerance);
     if (options.tolerance) requireWithin("tolerance", *options.tolerance, bounds::pictureTolerance);
+    options.seconds = optionalNumber(seconds);
+    if (options.seconds) requireWithin("seconds", *options.seconds, bounds::seconds);
     if (!view.is_none()) {
         const auto [theta, phi] = view.cast<std::pair<double, double>>();
         requireWithin("view", theta, 0, 180);
@@ -141,7 +144,8 @@ void bindPictures(py::module_& module) {
                py::arg("cosine") = options.cosine, py::arg("outgoing") = py::none(),
                py::arg("exposures") = py::none(), py::arg("exposure") = py::none(),
                py::arg("size") = options.size, py::arg("samples") = py::none(),
-               py::arg("tolerance") = py::none(), py::arg("progress") = py::none(),
+               py::arg("tolerance") = py::none(), py::arg("seconds") = py::none(),
+               py::arg("progress") = py::none(),
                R"(Pictures of materials on spheres or a mesh, written to path (.png or .exr).
 
 specs   specifications or paths, one or a sequence; of a folder, the files in it
@@ -151,6 +155,7 @@ by      "integration", "coefficients" or "both", which adds their difference; wi
         light that is no point, mesh, view, bases, orders or exposures, a row for each material:
         direct integration, then each basis and order, radiance in W/(m^2 sr) per unit of light
 tolerance  bound of the estimated error of integration; None: 0.05 of "integration", 0.005 of "both"
+seconds end of integration, with the best picture so far; None: no end
 view    (theta, phi) to the viewer in degrees; exposures: stops, a column each
 
 Returns the answer of the command: of each picture its place, error, relative L2 and largest

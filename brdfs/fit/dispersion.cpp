@@ -83,7 +83,8 @@ Minimum search(DispersedProblem& problem, const FitOptions& options, FitResult& 
     constexpr std::size_t searched = 2;
     Minimum best;
     for (std::size_t i = 0; i < searched; ++i) {
-        Minimum found = minimised(problem, starts[i].x, {.iterations = options.iterations});
+        Minimum found = minimised(problem, starts[i].x,
+                                  {.iterations = options.iterations, .limit = options.limit});
         result.iterations += found.iterations;
         result.evaluations += found.evaluations;
         if (best.x.empty() || found.cost < best.cost) best = std::move(found);
@@ -94,7 +95,7 @@ Minimum search(DispersedProblem& problem, const FitOptions& options, FitResult& 
     if (!(result.robustScale > 0))
         result.robustScale = robustScaleOf(options.robust, problem.residuals(best.x));
     problem.setRobust(options.robust, result.robustScale);
-    best = minimised(problem, best.x, {.iterations = options.iterations});
+    best = minimised(problem, best.x, {.iterations = options.iterations, .limit = options.limit});
     result.iterations += best.iterations;
     result.evaluations += best.evaluations;
     return best;
@@ -185,7 +186,8 @@ FitResult fitDispersed(const FitSamples& samples, const FitOptions& options) {
         const FitSamples readings = averaged(stated, instrument, quadratures.levels);
         DispersedProblem problem(readings, model, options.loss, mix);
         found = round == 0 ? search(problem, options, result)
-                           : minimised(problem, found.x, {.iterations = options.iterations});
+                           : minimised(problem, found.x,
+                                       {.iterations = options.iterations, .limit = options.limit});
         setMaterial(model, found.x, result);
         if (!quadratures.refine(*openFit(result), samples, instrument)) continue;
         result.converged = found.converged;

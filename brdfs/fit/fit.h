@@ -8,6 +8,8 @@
 #include <brdfs/fit/loss.h>
 #include <brdfs/fit/uncertainty.h>
 
+#include <hshfit/time_limit.h>
+
 #include <cctype>
 #include <cstdint>
 #include <functional>
@@ -38,6 +40,7 @@ struct FitOptions {
     std::vector<double> from = {};
     std::uint64_t seed = 1;  ///< of the starts
     int iterations = 200;    ///< of the last search
+    TimeLimit limit = {};    ///< searches end with it where they are, not converged
     /// To compare models: the search from the best start alone, without second derivatives, whose
     /// loss is near the least.
     bool brief = false;

@@ -223,7 +223,8 @@ std::vector<Minimum> coarseMinima(const FitProblem& problem, bool linear,
     MinimiseOptions few{.iterations = pixels ? heatIterations : most,
                         .costTolerance = 1e-8,
                         .stepTolerance = 1e-7,
-                        .curvature = false};
+                        .curvature = false,
+                        .limit = options.limit};
     const Search search(problem, linear);
     std::mutex mutex;
     std::size_t done = 0;
@@ -367,7 +368,8 @@ Fitted searchMinimum(FitProblem& problem, const FitOptions& options) {
     const FitProblem small(coarse, problem.sum(), options.loss);
     const std::vector<Minimum> minima = coarseMinima(few ? problem : small, linear, options);
     const Search search(problem, linear);
-    const MinimiseOptions last{.iterations = options.iterations, .curvature = !options.brief};
+    const MinimiseOptions last{
+        .iterations = options.iterations, .curvature = !options.brief, .limit = options.limit};
     const Route route = routeOf(samples);
     const bool many = route == Route::byTwoParts;
     const FitSamples middle = samples.drawn(many ? middleCount : 1, options.seed);

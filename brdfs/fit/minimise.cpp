@@ -202,10 +202,14 @@ private:
 /// iterations, in a valley that is all but level: if the gradient is as small.
 class Settled final : public ceres::IterationCallback {
 public:
-    explicit Settled(std::function<double()> pull) : pull_(std::move(pull)) {}
+    Settled(std::function<double()> pull, const TimeLimit& limit)
+        : pull_(std::move(pull)), limit_(limit) {}
+    bool endedByTime() const { return endedByTime_; }
     ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
         constexpr std::size_t window = 10;
         if (stopIsRequested()) return ceres::SOLVER_ABORT;
+        endedByTime_ = limit_.isOver();
+        if (endedByTime_) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
         costs_.push_back(summary.cost);
         if (costs_.size() <= window) return ceres::SOLVER_CONTINUE;
         const double fallen = costs_[costs_.size() - 1 - window] - summary.cost;
@@ -216,6 +220,8 @@ public:
 
 private:
     std::function<double()> pull_;
+    const TimeLimit& limit_;
+    bool endedByTime_ = false;
     std::vector<double> costs_;
 };
 
@@ -226,7 +232,7 @@ void solve(const SumOfSquares& equations, std::span<const double> lower,
     ceres::Problem problem;
     auto* residuals = new CompressedResiduals(equations, lower, upper);
     problem.AddResidualBlock(residuals, nullptr, result.x.data());
-    Settled settled([&] { return residuals->pull(); });
+    Settled settled([&] { return residuals->pull(); }, options.limit);
     for (std::size_t i = 0; i < result.x.size(); ++i) {
         problem.SetParameterLowerBound(result.x.data(), static_cast<int>(i), lower[i]);
         problem.SetParameterUpperBound(result.x.data(), static_cast<int>(i), upper[i]);
@@ -246,10 +252,12 @@ void solve(const SumOfSquares& equations, std::span<const double> lower,
     ceres::Solve(ceresOptions, &problem, &summary);
     stopIfRequested();
     result.cost = summary.final_cost;
-    const bool level = summary.termination_type == ceres::USER_SUCCESS;
+    const bool ended = settled.endedByTime();
+    const bool level = summary.termination_type == ceres::USER_SUCCESS && !ended;
     result.converged = level || summary.termination_type == ceres::CONVERGENCE;
-    result.message =
-        level ? "The cost fell by less than 1e-7 of itself in 10 iterations." : summary.message;
+    result.message = ended   ? "stopped at the end of the time"
+                     : level ? "The cost fell by less than 1e-7 of itself in 10 iterations."
+                             : summary.message;
     result.iterations += static_cast<int>(summary.iterations.size()) - 1;
     result.evaluations += summary.num_residual_evaluations + summary.num_jacobian_evaluations;
 }
@@ -276,7 +284,7 @@ Minimum minimise(const SumOfSquares& equations, std::vector<double> start,
         const int first = options.curvature ? std::min(left, gaussNewtonIterations) : left;
         solve(always(equations), lower, upper, options, first, result);
         left -= first;
-        if (result.converged || left == 0) return result;
+        if (result.converged || left == 0 || options.limit.isOver()) return result;
     }
     // Large residuals: what Gauss-Newton leaves out of the matrix rules its (linear) convergence.
     const Newton newton(equations, options.fewer, lower, upper, known ? renewalOfFewer : renewal);

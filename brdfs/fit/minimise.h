@@ -2,6 +2,8 @@
 
 #include <brdfs/fit/normal_equations.h>
 
+#include <hshfit/time_limit.h>
+
 #include <functional>
 #include <span>
 #include <string>
@@ -23,6 +25,7 @@ struct MinimiseOptions {
     /// The same sum over a part of its samples: what Gauss-Newton's matrix lacks is that of this
     /// one, from the first iteration on, for the price of fewer samples. Null: of all samples.
     const SumOfSquares* fewer = nullptr;
+    TimeLimit limit = {};  ///< the search ends with it, not converged
 };
 
 /// The report of Ceres on a run.

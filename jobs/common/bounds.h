@@ -37,6 +37,7 @@ inline constexpr Bounds<int> sampleCount{0, 10000000}, sampleElevations{0, 1000}
 // Pictures.
 inline constexpr Bounds<int> pictureSize{8, 4096}, pictureSamples{1, 16};
 inline constexpr Bounds<double> dome{0, 1e6}, fieldOfView{0.1, 170}, pictureTolerance{1e-6, 0.5};
+inline constexpr Bounds<double> seconds{0.01, 1e7};
 
 // Scenes: global illumination, precomputed transfer, plans.
 inline constexpr Bounds<int> pathSamples{1, 1 << 24}, mostBounces{0, 1000000},

@@ -49,6 +49,7 @@ brdfs::FitOptions optionsOf(const FitOptions& options, const Brdf& data, bool dr
     fit.starts = options.starts;
     fit.seed = options.seed;
     fit.iterations = options.iterations;
+    fit.limit = TimeLimit(options.seconds);
     fit.uncertainty.report = !options.sigma.empty() || !options.scans.empty() ||
                              options.bootstrap > 0 || options.profile ||
                              !options.residuals.empty() || options.instrument.any();

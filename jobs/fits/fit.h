@@ -38,7 +38,9 @@ struct FitOptions {
     std::string dispersion = {};   ///< laws over the wavelength (brdfs::parseDispersion)
     int starts = 16;               ///< local searches
     int iterations = 200;          ///< at most, in the last search
-    std::uint64_t seed = 1;        ///< of starts and drawn samples
+    /// Of searches, which end then where they are, not converged; none: as long as they take.
+    std::optional<double> seconds = {};
+    std::uint64_t seed = 1;  ///< of starts and drawn samples
     double grazingCut = brdfs::SampleOptions{}.grazingCut;
     std::size_t samples = 0;  ///< to draw; 0: all
     bool accept = false;      ///< accept a fit that did not converge

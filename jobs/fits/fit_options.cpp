@@ -74,6 +74,10 @@ constexpr OptionRow fitRows[] = {
     OptionRow{"starts", at<&FitOptions::starts>, "Local searches"}.within(bounds::starts),
     OptionRow{"iterations", at<&FitOptions::iterations>, "At most so many in the last search"}
         .within(bounds::iterations),
+    OptionRow{"seconds", at<&FitOptions::seconds>,
+              "End the searches after that time where they are, not converged; with --accept the "
+              "best point so far is the fit"}
+        .within(bounds::seconds),
     OptionRow{"seed", at<&FitOptions::seed>, "Of starts and drawn samples"},
     OptionRow{"sigma", at<&FitOptions::sigma>,
               "Standard uncertainty of a sample: 2%+0.001 (relative and absolute, in squares), "

@@ -11,9 +11,11 @@
 #include <hshfit/pictures/sphere_picture.h>
 #include <hshfit/projection/projection.h>
 #include <hshfit/transport/possible_radiance.h>
+#include <hshfit/wording.h>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -144,6 +146,12 @@ void remark(const RenderedPicture& picture, std::size_t points, const Listener& 
                         "error is {:.2g} %",
                         picture.brdf, picture.cut, points, 100 * picture.error));
     }
+    if (picture.early > 0) {
+        listener.say(fmt::format(
+            "{}: the time was over before {} of {} points kept to the bound; the "
+            "estimated error is {:.2g} %, of a pixel at most {:.2g} %",
+            picture.brdf, picture.early, points, 100 * picture.error, 100 * picture.largest.error));
+    }
     if (picture.difference && picture.difference->relativeL2 > enough && picture.missed &&
         *picture.missed <= enough) {
         listener.say(
@@ -171,6 +179,7 @@ public:
     Renderer(const RenderOptions& options, const Listener& listener, Rendered& result)
         : options_(options),
           listener_(listener),
+          limit_(options.seconds),
           result_(result),
           view_(radians(options.viewTheta), radians(options.viewPhi), radians(options.fieldOfView)),
           columns_(columnsOf(options)),
@@ -196,9 +205,9 @@ public:
         for (Material& material : materials_) {
             const std::string name = material.brdf->name();
             if (light_) {
-                material.truth =
-                    renderByIntegration(*material.brdf, points_, view_, *light_,
-                                        {.tolerance = options_.bound()}, listener_.part(name));
+                material.truth = renderByIntegration(*material.brdf, points_, view_, *light_,
+                                                     {.tolerance = options_.bound()},
+                                                     listener_.part(name), limitOf(material));
                 check(material, material.truth->picture, 0);
             }
             material.projections = projectionsOf(*material.brdf, columns_, options_,
@@ -242,6 +251,7 @@ public:
                                       .largest = material.truth->largest,
                                       .evaluations = material.truth->evaluations,
                                       .cut = material.truth->cut,
+                                      .early = material.truth->early,
                                       .notFinite = material.truth->picture.notFinite};
                 remark(facts, points_.count(), listener_);
                 sheet.add(facts, material.truth->picture);
@@ -268,6 +278,10 @@ public:
     }
 
 private:
+    /// Materials share the time that is left evenly.
+    TimeLimit limitOf(const Material& material) const {
+        return limit_.share(static_cast<double>(&materials_.back() - &material + 1));
+    }
     void check(const Material& material, const SpherePicture& picture, int samples) const {
         requirePossible({.name = "the picture of " + material.brdf->name(),
                          .width = picture.size,
@@ -278,6 +292,7 @@ private:
 
     const RenderOptions& options_;
     const Listener& listener_;
+    const TimeLimit limit_;
     Rendered& result_;
     const View view_;
     const Columns columns_;
@@ -304,6 +319,10 @@ std::string kindName(RenderedPicture::Kind kind) {
 Rendered render(const std::vector<std::string>& specs, const std::string& output,
                 const RenderOptions& options, const Listener& listener) {
     checkSpheresPath(output);
+    if (options.seconds && options.by == RenderOptions::By::coefficients)
+        throw UsageError(fmt::format("{} bounds integration: add {}",
+                                     Setting{"RenderOptions::seconds"},
+                                     Setting{"RenderOptions::by", "integration"}));
     Rendered result;
     Renderer renderer(options, listener, result);
     renderer.open(expandInputs(specs, Members::both));

@@ -37,6 +37,9 @@ struct RenderOptions {
     /// Bound of the estimated relative error of integration at a point; none: 5 % of a picture by
     /// integration alone (docs/reference/render.md has real errors), and 0.5 % beside coefficients.
     std::optional<double> tolerance = {};
+    /// The time for integration; none: as long as it takes. At its end the picture is what was
+    /// reached, but for a first pass over all pixels (renderByIntegration).
+    std::optional<double> seconds = {};
 
     double bound() const {
         constexpr double alone = 0.05;
@@ -56,7 +59,7 @@ struct RenderedPicture {
     double error = 0;                  ///< LitPicture::error
     LitPicture::Largest largest = {};  ///< of integration
     double evaluations = 0;            ///< of f, the mean over the points of integration
-    std::size_t cut = 0, notFinite = 0;
+    std::size_t cut = 0, early = 0, notFinite = 0;
     double amplification = 1;  ///< of a difference, in .png files
     /// For coefficients and differences, where there is a picture by integration.
     std::optional<PictureDifference> difference = {};

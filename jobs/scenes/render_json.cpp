@@ -41,6 +41,7 @@ Json pictureJson(const RenderedPicture& picture) {
         json["largest_error_at"] = {{"column", picture.largest.column},
                                     {"row", picture.largest.row}};
         json["cut_points"] = picture.cut;
+        json["early_points"] = picture.early;
         return json;
     }
     json["missed"] = picture.missed ? Json(*picture.missed) : Json();

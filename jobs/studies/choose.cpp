@@ -77,6 +77,7 @@ choice::Choice choose(const std::string& spec, const std::string& output,
                               .kinds = renderer.kinds,
                               .bytes = options.bytes,
                               .error = options.error,
+                              .cpuSeconds = options.seconds,
                               .progress = listener.part("choose")};
     bool said = false;
     how.found = [&](const choice::Row& row) {

@@ -16,6 +16,7 @@ struct ChooseOptions {
     std::vector<std::string> kinds = {};    ///< to try; empty: all
     std::optional<std::size_t> bytes = {};  ///< at most
     std::optional<double> error = {};       ///< mean FLIP at most; none: PoorBounds::flip
+    double seconds = choice::ChoiceOptions{}.cpuSeconds;  ///< of the processor, of all candidates
 };
 OptionRows<ChooseOptions> chooseOptions();
 

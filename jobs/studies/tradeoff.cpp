@@ -70,6 +70,7 @@ void measureAll(MeasuredTradeoffs& result, const TradeoffOptions& options, FileS
                 const Listener& listener) {
     const PairSample pairs = pairsFor(options);
     const auto open = [](const std::string& spec) { return openBrdf(spec); };
+    const TimeLimit limit(options.seconds);
     for (const std::string& spec : result.specs) {
         try {
             const auto brdf = openBrdf(spec, options.rgb);
@@ -79,6 +80,7 @@ void measureAll(MeasuredTradeoffs& result, const TradeoffOptions& options, FileS
             }
             tradeoff::TradeoffOptions how = measurementOf(options);
             how.progress = listener.part(spec);
+            how.limit = limit.share(static_cast<double>(&result.specs.back() - &spec + 1));
             result.trades.push_back(measure(*brdf, pairs, how, open));
         } catch (const OutputError&) {
             throw;

@@ -26,6 +26,8 @@ struct TradeoffOptions {
     /// CSV to write: the pairs, their weights and the values of the one BRDF; empty: none.
     std::string writePairs = {};
     bool rgb = false;  ///< wavelengths as linear Rec. 709
+    /// For all BRDFs; forms that are not reached are left out. None: as long as it takes.
+    std::optional<double> seconds = {};
 };
 /// Without those of the sweep.
 OptionRows<TradeoffOptions> tradeoffOptions();

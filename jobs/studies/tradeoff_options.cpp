@@ -46,6 +46,10 @@ constexpr OptionRow tradeoffRows[] = {
     OptionRow{"write-pairs", at<&TradeoffOptions::writePairs>,
               "CSV to write: the pairs, their weights and the values of SPEC"}
         .takes({.files = Files::written, .dash = ".csv"}),
+    OptionRow{"seconds", at<&TradeoffOptions::seconds>,
+              "End the measurements after that time with the forms so far; a quarter of it is for "
+              "times of evaluation, without --no-timing"}
+        .within(bounds::seconds),
     OptionRow{"wavelets", at<&TradeoffOptions::measurement, &tradeoff::TradeoffOptions::wavelets>,
               "Measure the best terms of SOHO wavelets too, for comparison"},
     rgbRow(at<&TradeoffOptions::rgb>),
@@ -69,6 +73,10 @@ constexpr OptionRow chooseRows[] = {
               "Mean FLIP of a faithful material at most (default: 0.1); if it is stated, nothing "
               "else is recommended"}
         .within(Bounds<double>{0, 1}),
+    OptionRow{"seconds", at<&ChooseOptions::seconds>,
+              "Seconds of the processor for all candidates: one that would exceed them is left "
+              "out, with that reason"}
+        .within(bounds::seconds),
 };
 
 constexpr OptionRow stressRows[] = {

@@ -502,6 +502,7 @@ def fit(
     samples: int = ...,
     starts: int = ...,
     iterations: int = ...,
+    seconds: Optional[float] = ...,
     seed: int = ...,
     sigma: Optional[Path] = ...,
     calibration: str = ...,
@@ -629,6 +630,7 @@ def render(
     size: int = ...,
     samples: Optional[int] = ...,
     tolerance: Optional[float] = ...,
+    seconds: Optional[float] = ...,
     progress: Progress = ...,
 ) -> Row: ...
 def illuminate(
@@ -719,6 +721,7 @@ def choose(
     kinds: Names = ...,
     bytes: Optional[int] = ...,
     error: Optional[float] = ...,
+    seconds: float = ...,
     progress: Progress = ...,
 ) -> Row: ...
 def ltc(
@@ -780,6 +783,7 @@ def tradeoff(
     pair_count: int = ...,
     pairs: Optional[Path] = ...,
     write_pairs: Optional[Path] = ...,
+    seconds: Optional[float] = ...,
     wavelets: bool = ...,
     rgb: bool = ...,
     tolerance: float = ...,

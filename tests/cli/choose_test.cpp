@@ -155,6 +155,10 @@ TEST_F(ChooseCommand, RecommendsNothingBeyondTheStatedError) {
         EXPECT_NE(file.path().extension(), ".glb");
 }
 
+TEST_F(ChooseCommand, LeavesOutWhatTheTimeIsTooShortFor) {
+    expectError("choose ggx:alpha=.4 --seconds 0.01", 4, "of 0.01 are spent", 0);
+}
+
 TEST_F(ChooseCommand, RefusesWhatItDoesNotKnow) {
     expectError("choose lambert --for thre", 2, "did you mean 'three'", 0);
     expectError("choose lambert --kinds model,lobe", 2, "did you mean 'lobes'", 0);

@@ -65,6 +65,15 @@ TEST_F(Cli, FitsOfSamplesOverDecadesSeeAllOfThem) {
         << poor["poor"];
 }
 
+TEST_F(Cli, FitEndsInTimeWithWhatItHas) {
+    const std::string job = "fit ggx:alpha=.3,kd=.2 --model disney --seconds 0.01 ";
+    expectError(job + "-o " + path("x.json"), 4, "stopped at the end of the time", 0);
+    EXPECT_FALSE(fs::exists(path("x.json")));
+    const Answer taken = run(job + "--accept --json");
+    ASSERT_EQ(taken.code, 0) << taken.err;
+    EXPECT_EQ(Json::parse(taken.out)["fit"]["converged"], false);
+}
+
 TEST_F(Cli, FitNamesWhatIsWrong) {
     expectError("fit lambert -o " + path("x.json"), 2, "--model", 0);
     expectError("fit --model ward -o " + path("x.json"), 2, "DATA", 0);

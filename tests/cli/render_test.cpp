@@ -45,6 +45,19 @@ TEST_F(Cli, RenderNamesTheSpheresInTheirOrder) {
     EXPECT_EQ(json["exposure"], Json({{"automatic", false}, {"stops", -1.5}}));
 }
 
+TEST_F(Cli, RenderEndsIntegrationInTimeAndSaysSo) {
+    const std::string sky = "render ggx:alpha=.1 --light sky:type=12,elevation=30 --size 48 ";
+    expectError(sky + "--by coefficients --seconds 1 -o " + path("t.exr"), 2, "--by integration",
+                0);
+    const Answer answer = run(sky + "--by integration --seconds 0.01 --json -o " + path("s.exr"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_NE(answer.err.find("the time was over before"), std::string::npos) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "render"));
+    const Json picture = Json::parse(answer.out)["pictures"][0];
+    EXPECT_GT(picture["early_points"], 100);
+    EXPECT_LE(picture["largest_error"], 0.5);
+}
+
 TEST_F(Cli, RenderRefusesInOneLine) {
     const std::string to = " -o " + path("s.png");
     expectError("render lambert", 2, "--output", 0);

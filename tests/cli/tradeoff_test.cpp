@@ -45,6 +45,18 @@ TEST_F(TradeoffCommand, WritesTheSameFilesTwiceBesidesTimes) {
     EXPECT_TRUE(keepsSchema(read(path("a/tradeoff.json")), "tradeoff"));
 }
 
+TEST_F(TradeoffCommand, TellsTheFirstFormsAndEndsInTime) {
+    const Answer whole = trade("--json --no-timing");
+    // Coefficients of five bands, before the long work.
+    const std::size_t first = whole.err.find("so far");
+    ASSERT_NE(first, std::string::npos) << whole.err;
+    EXPECT_NE(whole.err.substr(first).find("--order 5"), std::string::npos) << whole.err;
+    EXPECT_EQ(json::parse(trade("--json --no-timing --seconds 1000").out), json::parse(whole.out));
+    const Answer none = trade("--json --no-timing --seconds 0.01");
+    EXPECT_EQ(none.code, 4);
+    EXPECT_NE(none.err.find("the time was over"), std::string::npos) << none.err;
+}
+
 TEST_F(TradeoffCommand, AnswersWithJsonThatKeepsItsSchema) {
     const Answer answer = trade("--json");
     ASSERT_EQ(answer.code, 0) << answer.err;

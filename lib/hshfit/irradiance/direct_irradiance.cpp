@@ -43,14 +43,117 @@ struct Moments {
 
 }  // namespace
 
-/// A tree of blocks of pixels, each level two by two of the one below, in the picture's own frame.
+/// A picture in its own frame.
 class DirectIrradiance::Picture {
 public:
-    explicit Picture(const PictureLight& light) : light_(light), geometry_(geometryOf(light)) {
-        if (light.layout == PictureLayout::latlong)
-            setLatlong();
-        else
-            setVectors();
+    virtual ~Picture() = default;
+    virtual Rgb at(const Direction& normal) const = 0;
+};
+
+/// The columns of a latitude-longitude picture. The integral of w d omega over a pixel is
+/// (across x, across y, up) with x and y of its column, across and up of its row; up / across falls
+/// from the zenith to the nadir, so that a plane leaves the upper part of a column on one side.
+class DirectIrradiance::Columns final : public Picture {
+public:
+    explicit Columns(const PictureLight& light) : light_(light) {
+        setPixels();
+        sums_.resize((light.height / rowsOfSum + 1) * light.width);
+        for (std::size_t column = 0; column < light.width; ++column) {
+            Sums sum{};
+            for (std::size_t row = 0; row < light.height; ++row) {
+                if (row % rowsOfSum == 0) sums_[row / rowsOfSum * light.width + column] = sum;
+                sum.add(pixel(row, column), rows_[row], 1);
+            }
+            if (light.height % rowsOfSum == 0)
+                sums_[light.height / rowsOfSum * light.width + column] = sum;
+            whole_.push_back(sum);
+        }
+    }
+
+    Rgb at(const Direction& normal) const override {
+        const Direction n = toPicture(light_, normal);
+        Rgb result{};
+        std::size_t end = 0;  // of the rows on the zenith's side; neighbours differ by little
+        for (std::size_t column = 0; column < light_.width; ++column) {
+            const double along = n.x * columns_[column].x + n.y * columns_[column].y;
+            const auto isUpper = [&](std::size_t row) {
+                const double cosine = along * rows_[row].across + n.z * rows_[row].up;
+                return n.z >= 0 ? cosine > 0 : cosine <= 0;
+            };
+            while (end < light_.height && isUpper(end)) ++end;
+            while (end > 0 && !isUpper(end - 1)) --end;
+            const Sums upper = above(end, column);
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double share = along * upper.across[c] + n.z * upper.up[c];
+                const Sums& all = whole_[column];
+                result[c] += n.z >= 0 ? share : along * all.across[c] + n.z * all.up[c] - share;
+            }
+        }
+        return result;
+    }
+
+private:
+    static constexpr std::size_t rowsOfSum = 8;
+    struct Row {
+        double across, up;
+    };
+    struct Column {
+        double x, y;
+    };
+    /// Sums of R, G, B times `across` and `up` over rows of a column.
+    struct Sums {
+        Rgb across, up;
+        void add(const float* rgb, const Row& row, double sign) {
+            for (std::size_t c = 0; c < 3; ++c) {
+                across[c] += sign * rgb[c] * row.across;
+                up[c] += sign * rgb[c] * row.up;
+            }
+        }
+    };
+
+    /// sin^2 theta d theta = d (theta - sin theta cos theta) / 2; phi = pi - psi.
+    void setPixels() {
+        const double height = pi / static_cast<double>(light_.height);
+        const double width = 2 * pi / static_cast<double>(light_.width);
+        for (std::size_t r = 0; r < light_.height; ++r) {
+            const double top = height * static_cast<double>(r), bottom = top + height;
+            const double s = std::sin(top), t = std::sin(bottom);
+            rows_.push_back({(height - t * std::cos(bottom) + s * std::cos(top)) / 2,
+                             (t * t - s * s) / 2 * width});
+        }
+        for (std::size_t c = 0; c < light_.width; ++c) {
+            const double left = width * static_cast<double>(c), right = left + width;
+            columns_.push_back(
+                {std::sin(left) - std::sin(right), std::cos(left) - std::cos(right)});
+        }
+    }
+    const float* pixel(std::size_t row, std::size_t column) const {
+        return light_.rgb.data() + 3 * (row * light_.width + column);
+    }
+    /// The rows before `end`, from the nearest sum.
+    Sums above(std::size_t end, std::size_t column) const {
+        const std::size_t last = light_.height / rowsOfSum;
+        const std::size_t nearest = std::min((end + rowsOfSum / 2) / rowsOfSum, last);
+        Sums sum = sums_[nearest * light_.width + column];
+        for (std::size_t row = nearest * rowsOfSum; row < end; ++row)
+            sum.add(pixel(row, column), rows_[row], 1);
+        for (std::size_t row = end; row < nearest * rowsOfSum; ++row)
+            sum.add(pixel(row, column), rows_[row], -1);
+        return sum;
+    }
+
+    const PictureLight& light_;
+    std::vector<Row> rows_;
+    std::vector<Column> columns_;
+    std::vector<Sums> sums_;   ///< of the rows before every eighth, [row / 8][column]
+    std::vector<Sums> whole_;  ///< of columns
+};
+
+/// A tree of blocks of pixels, each level two by two of the one below.
+class DirectIrradiance::Blocks final : public Picture {
+public:
+    explicit Blocks(const PictureLight& light) : light_(light), geometry_(geometryOf(light)) {
+        setVectors();
         Level first{.width = blocks(light.width), .height = blocks(light.height), .nodes = {}};
         first.nodes.reserve(first.width * first.height);
         for (std::size_t row = 0; row < first.height; ++row)
@@ -60,7 +163,7 @@ public:
         while (levels_.back().nodes.size() > 1) levels_.push_back(above(levels_.back()));
     }
 
-    Rgb at(const Direction& normal) const {
+    Rgb at(const Direction& normal) const override {
         Rgb sum{};
         add(levels_.size() - 1, 0, 0, toPicture(light_, normal), sum);
         return sum;
@@ -81,32 +184,6 @@ private:
         return (pixels + pixelsOfBlock - 1) / pixelsOfBlock;
     }
 
-    /// Cosines and sines at the edges of rows and columns, and integrals between them:
-    /// sin^2 theta d theta = d (theta - sin theta cos theta) / 2; phi = pi - psi.
-    void setLatlong() {
-        const auto step = [](double angle, std::size_t count, std::vector<double>& cosine,
-                             std::vector<double>& sine) {
-            for (std::size_t k = 0; k <= count; ++k) {
-                const double at = angle * static_cast<double>(k) / static_cast<double>(count);
-                cosine.push_back(std::cos(at));
-                sine.push_back(std::sin(at));
-            }
-        };
-        step(pi, light_.height, rowCosine_, rowSine_);
-        step(2 * pi, light_.width, columnCosine_, columnSine_);
-        const double height = pi / static_cast<double>(light_.height);
-        const double width = 2 * pi / static_cast<double>(light_.width);
-        for (std::size_t r = 0; r < light_.height; ++r) {
-            const double s = rowSine_[r], t = rowSine_[r + 1];
-            across_.push_back((height - t * rowCosine_[r + 1] + s * rowCosine_[r]) / 2);
-            up_.push_back((t * t - s * s) / 2 * width);
-        }
-        for (std::size_t c = 0; c < light_.width; ++c) {
-            columnX_.push_back(columnSine_[c] - columnSine_[c + 1]);
-            columnY_.push_back(columnCosine_[c] - columnCosine_[c + 1]);
-        }
-    }
-
     void setVectors() {
         vectors_.reserve(light_.width * light_.height);
         for (std::size_t r = 0; r < light_.height; ++r) {
@@ -121,14 +198,9 @@ private:
 
     /// Integral of w d omega over a pixel.
     Direction vectorOf(std::size_t row, std::size_t column) const {
-        if (light_.layout == PictureLayout::latlong)
-            return {across_[row] * columnX_[column], across_[row] * columnY_[column], up_[row]};
         return vectors_[row * light_.width + column];
     }
     Direction corner(std::size_t row, std::size_t column) const {
-        if (light_.layout == PictureLayout::latlong)
-            return {-rowSine_[row] * columnCosine_[column], rowSine_[row] * columnSine_[column],
-                    rowCosine_[row]};
         return geometry_.direction(static_cast<double>(column), static_cast<double>(row));
     }
     const float* pixel(std::size_t row, std::size_t column) const {
@@ -227,18 +299,19 @@ private:
 
     const PictureLight& light_;
     PictureGeometry geometry_;
-    std::vector<double> rowCosine_, rowSine_, columnCosine_, columnSine_;
-    std::vector<double> across_, up_, columnX_, columnY_;  ///< of rows, of columns
-    std::vector<Direction> vectors_;  ///< of pixels, row by row, in other layouts
+    std::vector<Direction> vectors_;  ///< of pixels, row by row
     std::vector<Level> levels_;
 };
 
 DirectIrradiance::DirectIrradiance(std::span<const Light> lights) {
     for (const Light& light : lights) {
-        if (const auto* picture = std::get_if<PictureLight>(&light))
-            pictures_.push_back(std::make_unique<Picture>(*picture));
-        else
+        const auto* picture = std::get_if<PictureLight>(&light);
+        if (!picture)
             others_.push_back(&light);
+        else if (picture->layout == PictureLayout::latlong)
+            pictures_.push_back(std::make_unique<Columns>(*picture));
+        else
+            pictures_.push_back(std::make_unique<Blocks>(*picture));
     }
 }
 

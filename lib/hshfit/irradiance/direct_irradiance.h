@@ -10,8 +10,8 @@ namespace hshfit::inline irradiance {
 
 /// Irradiance of a surface in the light, without coefficients:
 ///     E(n) = integral of L(w) max(0, n . w) d omega.
-/// Pictures: n times the vector integrals of L w d omega over blocks of pixels that lie above the
-/// horizon, exact for latitude-longitude pictures; blocks on the horizon down to their pixels,
+/// Pictures: n times the vector integrals of L w d omega over columns, or blocks, of pixels that
+/// lie above the horizon, exact for latitude-longitude pictures; on the horizon pixel by pixel,
 /// which count with their centre of flux (relative error about a quarter of the squared angle of a
 /// pixel). Discs, panels and skies by the nodes of light_nodes.h. Safe to use from many threads.
 class DirectIrradiance {
@@ -26,6 +26,8 @@ public:
 
 private:
     class Picture;
+    class Columns;
+    class Blocks;
     std::vector<std::unique_ptr<Picture>> pictures_;
     std::vector<const Light*> others_;
 };

@@ -5,6 +5,7 @@
 #include <hshfit/light/lights.h>
 #include <hshfit/rendering/direct_integral.h>
 #include <hshfit/rendering/view.h>
+#include <hshfit/time_limit.h>
 
 #include <cstddef>
 #include <functional>
@@ -31,15 +32,20 @@ struct LitPicture {
     };
     Largest largest = {};
     std::size_t cut = 0;     ///< points at which integration was ended by its bound of evaluations
+    std::size_t early = 0;   ///< points that the end of the time left above the tolerance
     double evaluations = 0;  ///< of f by integration, the mean over points
 };
 
 /// Radiance of a surface by direct integration (direct_integral.h) at every point. `brdf` is grey
 /// or RGB; a transmission is seen as a thin pane with the lights behind it. The picture does not
 /// depend on the number of threads.
+///
+/// With an end of the time, `until`: a point of each pixel to an error of 50 % first, however long
+/// that takes; then every point, and then every point to the tolerance, until the time is over.
+/// Points that were not reached have the mean of their pixel.
 LitPicture renderByIntegration(const Brdf& brdf, const SurfacePoints& points, const View& view,
                                const DirectIntegral& light, const IntegrationOptions& options = {},
-                               const RenderProgress& progress = {});
+                               const RenderProgress& progress = {}, const TimeLimit& until = {});
 
 struct CoefficientShading {
     /// The change of radiance, relative L2 over some points, at which no finer light samples are

@@ -69,11 +69,17 @@ std::size_t ProjectionCache::projectionsFor(std::span<const Form> forms) {
     return rootsOf(forms).size();
 }
 
-void ProjectionCache::prepare(std::span<const Form> forms, const std::function<void()>& done) {
-    for (const auto& [key, form] : rootsOf(forms)) {
+void ProjectionCache::prepare(std::span<const Form> forms, const std::function<void()>& done,
+                              const TimeLimit& limit) {
+    const std::map<std::string, Form> found = rootsOf(forms);
+    // Kinds that take little time first, which a limit then reaches.
+    std::vector<std::pair<std::string, Form>> roots(found.begin(), found.end());
+    std::ranges::stable_sort(roots, {}, [](const auto& root) { return root.second.kind; });
+    for (const auto& [key, form] : roots) {
         Made& into = projections_[key];
         const auto start = std::chrono::steady_clock::now();
         try {
+            if (limit.isOver()) throw NumericError(timeIsOver);
             make(form, into);
         } catch (const Error& error) {
             into.failure = error.code();

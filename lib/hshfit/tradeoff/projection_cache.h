@@ -2,6 +2,7 @@
 
 #include <hshfit/error.h>
 #include <hshfit/representation/forms/form.h>
+#include <hshfit/time_limit.h>
 
 #include <functional>
 #include <map>
@@ -9,6 +10,9 @@
 #include <string>
 
 namespace hshfit::tradeoff {
+
+/// The reason why a form is left out.
+inline constexpr const char* timeIsOver = "the time was over";
 
 /// Projections that many forms start from, each made once: at the highest order that any form asks
 /// of it, because the coefficients of lower orders are its prefix. Bases whose functions depend on
@@ -20,8 +24,10 @@ public:
     ProjectionCache(const Brdf& brdf, const ProjectionOptions& options);
 
     /// Projects for all these forms. A projection that does not exist or does not converge is
-    /// noted as the reason why its forms fail. `done` is called after each.
-    void prepare(std::span<const Form> forms, const std::function<void()>& done);
+    /// noted as the reason why its forms fail, and so is the end of the time. `done` is called
+    /// after each.
+    void prepare(std::span<const Form> forms, const std::function<void()>& done,
+                 const TimeLimit& limit = {});
     /// The number of projections that `prepare` would make.
     static std::size_t projectionsFor(std::span<const Form> forms);
 

@@ -17,10 +17,14 @@
 #include <cassert>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <set>
 #include <string_view>
+#include <tuple>
+#include <utility>
 
 namespace hshfit::tradeoff {
 namespace {
@@ -61,7 +65,8 @@ public:
     Maker(const Brdf& brdf, const TradeoffOptions& options, const BrdfOpener& open)
         : brdf_(brdf), options_(options), open_(open) {}
 
-    void prepare(const std::vector<Form>& forms, Steps& steps) {
+    void prepare(const std::vector<Form>& forms, const TimeLimit& limit,
+                 const std::function<void()>& done) {
         for (const auto& [name, list] : bySplit(forms)) {
             Part& part = parts_[name];
             try {
@@ -70,7 +75,7 @@ public:
                 part.failure = error.what();
                 continue;
             }
-            part.cache->prepare(list, [&] { steps.done(); });
+            part.cache->prepare(list, done, limit);
         }
     }
     static std::size_t projectionsFor(const std::vector<Form>& forms) {
@@ -165,6 +170,45 @@ Outcome measureOne(const Form& form, const Maker& maker, const PairReference& re
     return outcome;
 }
 
+/// The error that the fronts weigh.
+double weighed(const Measured& form, const std::string& metric) {
+    return metric == pictureMetric ? form.picture->flip.mean : weighed(form.errors, metric);
+}
+
+/// Hands on forms whose errors are below half of all before, as they are measured.
+class Finds {
+public:
+    Finds(const TradeoffOptions& options, std::string brdf)
+        : options_(options), brdf_(std::move(brdf)) {}
+    void add(const Outcome& outcome) {
+        constexpr double better = 0.5;
+        if (!options_.found || !outcome.failure.empty() || outcome.beyondBytes) return;
+        const double error = weighed(outcome.measured, options_.metric);
+        const std::lock_guard lock(mutex_);
+        if (!(error < better * least_)) return;
+        least_ = error;
+        options_.found(brdf_, outcome.measured, error);
+    }
+
+private:
+    const TradeoffOptions& options_;
+    std::string brdf_;
+    std::mutex mutex_;
+    double least_ = std::numeric_limits<double>::infinity();
+};
+
+/// A form to begin with, which takes little time: coefficients by outgoing direction, of no more
+/// bands than `project` has by default if there are such.
+const Form& firstForm(const std::vector<Form>& forms) {
+    constexpr int bands = 7;
+    const auto rank = [](const Form& form) {
+        return std::tuple(form.kind != Representation::Kind::outgoing, !form.split.empty(),
+                          form.rank > 0 || form.rankError > 0, form.order > bands,
+                          form.order > bands ? form.order : -form.order);
+    };
+    return *std::ranges::min_element(forms, {}, rank);
+}
+
 /// The error that no factored form of any basis can beat.
 void boundByRank(Tradeoff& trade, const Brdf& brdf, Quantity quantity) {
     constexpr std::size_t ranks = 8;
@@ -198,8 +242,30 @@ std::string timedAs(Form form) {
     return optionsOf(form);
 }
 
-void timeForms(Tradeoff& trade, const Maker& maker, const BrdfOpener& open, Steps& steps) {
+/// Leaves out the forms that have no time.
+void leaveOutUntimed(Tradeoff& trade, const std::map<std::string, FormTime>& found) {
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < trade.forms.size(); ++k) {
+        const auto time = found.find(timedAs(trade.forms[k].form));
+        if (time == found.end()) {
+            leaveOut(trade, timeIsOver, trade.forms[k].options);
+            continue;
+        }
+        trade.times[k].evaluation = time->second;
+        if (kept != k) {
+            trade.forms[kept] = std::move(trade.forms[k]);
+            trade.times[kept] = trade.times[k];
+        }
+        ++kept;
+    }
+    trade.forms.resize(kept);
+    trade.times.resize(kept);
+}
+
+void timeForms(Tradeoff& trade, const Maker& maker, const BrdfOpener& open, const TimeLimit& limit,
+               Steps& steps) {
     std::map<std::string, FormTime> found;
+    std::set<std::string> seen;
     std::vector<std::string> keys;
     std::vector<std::unique_ptr<PairEvaluator>> evaluators;
     const auto timeThese = [&] {
@@ -213,15 +279,15 @@ void timeForms(Tradeoff& trade, const Maker& maker, const BrdfOpener& open, Step
     };
     for (const Measured& measured : trade.forms) {
         const std::string key = timedAs(measured.form);
-        if (!found.try_emplace(key).second) continue;
+        if (!seen.insert(key).second) continue;
         keys.push_back(key);
         evaluators.push_back(pairEvaluator(maker.make(measured.form), open));
-        if (keys.size() == timedTogether) timeThese();
+        if (keys.size() < timedTogether) continue;
+        timeThese();
+        if (limit.isOver()) break;
     }
     timeThese();
-    for (std::size_t k = 0; k < trade.forms.size(); ++k) {
-        trade.times[k].evaluation = found.at(timedAs(trade.forms[k].form));
-    }
+    leaveOutUntimed(trade, found);
 }
 
 std::size_t timedCount(const std::vector<Form>& forms) {
@@ -314,8 +380,7 @@ std::vector<Form> formsFor(const Brdf& brdf, const TradeoffOptions& options) {
 }  // namespace
 
 double Tradeoff::errorOf(std::size_t form) const {
-    if (metric == pictureMetric) return forms[form].picture->flip.mean;
-    return weighed(forms[form].errors, metric);
+    return weighed(forms[form], metric);
 }
 
 double Tradeoff::bandErrorOf(std::size_t form, std::size_t band) const {
@@ -356,6 +421,8 @@ std::vector<std::size_t> Tradeoff::waveletFront() const {
 Tradeoff measure(const Brdf& brdf, PairSample pairs, const TradeoffOptions& options,
                  const BrdfOpener& open) {
     const std::vector<Form> forms = formsFor(brdf, options);
+    // A device that is none fails before the long work.
+    if (options.gpu) gpu::ComputeDevice{*options.gpu};
     Steps steps(options, Maker::projectionsFor(forms) + forms.size() +
                              (options.timing ? timedCount(forms) : 0));
     const PairReference reference(brdf, std::move(pairs));
@@ -366,14 +433,28 @@ Tradeoff measure(const Brdf& brdf, PairSample pairs, const TradeoffOptions& opti
                    .tolerance = options.projection.tolerance,
                    .pairs = reference.pairs().size(),
                    .noSquares = reference.noSquares()};
-    boundByRank(trade, brdf, options.sweep.quantity);
     const PictureReference pictures(brdf);
+    Finds finds(options, trade.brdf);
+    if (options.found) {
+        const Form& form = firstForm(forms);
+        Maker maker(brdf, options, open);
+        maker.prepare({form}, {}, [] {});
+        finds.add(measureOne(form, maker, reference, pictures, options, open));
+    }
+    boundByRank(trade, brdf, options.sweep.quantity);
+    const TimeLimit limit = options.limit.share(options.timing ? 4.0 / 3 : 1);
     Maker maker(brdf, options, open);
-    maker.prepare(forms, steps);
+    maker.prepare(forms, limit.share(4), [&] { steps.done(); });
 
     std::vector<Outcome> outcomes(forms.size());
     tbb::parallel_for(std::size_t{0}, forms.size(), [&](std::size_t k) {
-        outcomes[k] = measureOne(forms[k], maker, reference, pictures, options, open);
+        if (limit.isOver()) {
+            outcomes[k].measured.options = optionsOf(forms[k]);
+            outcomes[k].failure = timeIsOver;
+        } else {
+            outcomes[k] = measureOne(forms[k], maker, reference, pictures, options, open);
+        }
+        finds.add(outcomes[k]);
         steps.done();
     });
     for (Outcome& outcome : outcomes) {
@@ -398,7 +479,7 @@ Tradeoff measure(const Brdf& brdf, PairSample pairs, const TradeoffOptions& opti
     if (options.wavelets) {
         trade.wavelets = measureWavelets(brdf, reference, options.sweep, options.maxBytes);
     }
-    if (options.timing) timeForms(trade, maker, open, steps);
+    if (options.timing) timeForms(trade, maker, open, options.limit, steps);
     findFronts(trade, options);
     drawFronts(trade, maker, pictures, open);
     if (options.gpu) timeShadersOfFronts(trade, maker, *options.gpu);

@@ -4,6 +4,7 @@
 #include <hshfit/error.h>
 #include <hshfit/gpu/timing/shader_time.h>
 #include <hshfit/pictures/picture_error.h>
+#include <hshfit/time_limit.h>
 #include <hshfit/tradeoff/sweep.h>
 #include <hshfit/tradeoff/timing.h>
 #include <hshfit/tradeoff/wavelet_forms.h>
@@ -15,6 +16,8 @@
 #include <vector>
 
 namespace hshfit::tradeoff {
+
+struct Measured;
 
 struct TradeoffOptions {
     Sweep sweep = {};
@@ -32,6 +35,12 @@ struct TradeoffOptions {
     ProjectionOptions projection = {};
     /// Called with steps done and in all, from any thread.
     std::function<void(std::size_t, std::size_t)> progress = {};
+    /// Forms that are not reached are left out; a quarter of the time is for times, if they are
+    /// measured.
+    TimeLimit limit = {};
+    /// Called with a form whose error is below half of the least so far, and that error; first with
+    /// coefficients of few bands, before the long work. From one thread at a time.
+    std::function<void(const std::string& brdf, const Measured&, double error)> found = {};
 };
 
 /// One form of one BRDF.

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -19,6 +18,13 @@ using Byte = unsigned char;
 using Rgbe = std::array<Byte, 4>;
 
 constexpr std::size_t mostSide = std::size_t{1} << 28;
+/// Units of the mantissa by exponent, 2^(e - 136); 0 stands for black.
+constexpr std::array<float, 256> scales = [] {
+    std::array<float, 256> values{};
+    float value = 0x1p-135F;
+    for (std::size_t e = 1; e < values.size(); ++e, value *= 2) values[e] = value;
+    return values;
+}();
 /// Scan lines of other lengths are not compressed by component.
 constexpr std::size_t leastByComponent = 8, mostByComponent = 0x7fff;
 
@@ -161,8 +167,7 @@ public:
 
 private:
     static float valueOf(const Rgbe& pixel, std::size_t channel) {
-        constexpr int bias = 128 + 8;
-        return pixel[3] == 0 ? 0 : std::ldexp(static_cast<float>(pixel[channel]), pixel[3] - bias);
+        return static_cast<float>(pixel[channel]) * scales[pixel[3]];
     }
 
     void fail(std::size_t line) {
