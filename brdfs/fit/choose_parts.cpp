@@ -7,8 +7,10 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <Eigen/Dense>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -68,24 +70,35 @@ std::pair<bool, double> lessOf(const TriedParts& own) {
     return {!own.trial.failure.empty(), own.trial.loss};
 }
 
-/// The share of the squared residuals that differs between the channels.
-double colouredShare(const FitSamples& samples, const FitResult& result, Loss::Kind loss) {
+/// The root mean square of what neither a change of the brightness of f nor one that adds white
+/// explains of the residuals of RGB: parts other than films make no other changes with the
+/// directions.
+double errorOfHue(const FitSamples& samples, const FitResult& result, Loss::Kind loss) {
     const std::vector<double> model = predictedValues(result, samples);
-    const std::size_t count = samples.size(), channels = samples.channels.count();
-    double whole = 0, coloured = 0;
-    std::vector<double> r(channels);
+    const std::size_t count = samples.size();
+    double sum = 0, weights = 0;
     for (std::size_t k = 0; k < count; ++k) {
-        double mean = 0;
-        for (std::size_t c = 0; c < channels; ++c) {
-            const std::size_t v = c * count + k;
-            r[c] = std::sqrt(samples.weight(c, k)) *
-                   (mapValue(loss, model[v], samples.wiZ[k]).value -
-                    mapValue(loss, samples.values[v], samples.wiZ[k]).value);
-            mean += r[c] / static_cast<double>(channels);
+        Eigen::Vector3d r, brighter, whiter;
+        for (Eigen::Index c = 0; c < 3; ++c) {
+            const auto channel = static_cast<std::size_t>(c);
+            const std::size_t v = channel * count + k;
+            const double weight = std::sqrt(samples.weight(channel, k)), z = samples.wiZ[k];
+            weights += weight * weight;
+            const Mapped own = mapValue(loss, samples.values[v], z);
+            r(c) = weight * (mapValue(loss, model[v], z).value - own.value);
+            whiter(c) = weight * own.slope;
+            brighter(c) = whiter(c) * samples.values[v];
         }
-        for (const double own : r) whole += own * own, coloured += (own - mean) * (own - mean);
+        // Grey values have no second direction to leave out.
+        constexpr double grey = 0.02;
+        const Eigen::Vector3d across = brighter.cross(whiter);
+        const double length = across.norm(), most = brighter.norm() * whiter.norm();
+        if (length > grey * most)
+            sum += std::pow(r.dot(across) / length, 2);
+        else if (most > 0)
+            sum += r.cross(whiter).squaredNorm() / whiter.squaredNorm();
     }
-    return whole > 0 ? coloured / whole : 0;
+    return weights > 0 ? std::sqrt(sum / weights) : 0;
 }
 
 /// Fits of a model with some of its parts.
@@ -176,7 +189,7 @@ public:
     bool worthTrying(const std::string& name, const TriedParts& current) const {
         return partNamed(model_, name).with.empty() ||
                (samples_.origin == SampleOrigin::pixels &&
-                colouredShare(samples_, current.result, fit_.loss) >= options_.leastColoured);
+                errorOfHue(samples_, current.result, fit_.loss) >= options_.leastHue);
     }
 
 private:

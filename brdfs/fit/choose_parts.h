@@ -59,10 +59,10 @@ struct PartOptions {
     double leastGain = 0.02;
     /// Of pixels: a loss that nobody sees, a twentieth of a unit of L*, is no reason for a part.
     double unseen = 5e-4;
-    /// Of pixels, a thin film is tried where so much of the squared residuals differs between R, G
-    /// and B: other parts have no colours that change with the directions. Of other samples, whose
-    /// noise differs between channels, it is not.
-    double leastColoured = 0.25;
+    /// Of pixels, a thin film is tried where the hue of f is off by as much, as the loss maps RGB
+    /// (root mean square): other parts have no colours that change with the directions. Of other
+    /// samples, whose noise differs between channels, it is not.
+    double leastHue = 0.01;
     /// Samples that the search draws, of others than pixels, which have FitSamples::fewer; the fit
     /// that follows takes all.
     std::size_t samples = 4096;
