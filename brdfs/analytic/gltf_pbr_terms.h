@@ -191,7 +191,9 @@ struct GltfPbrFormula {
     static Weights<N> weights(const Values<N>& p) {
         const N metallic = p("metallicFactor"), base = p("baseColorFactor");
         const N dielectric = (1 - metallic) * p("specularFactor");
-        const auto own = [&](std::size_t c) { return N(p.channel() == c ? 1.0 : 0.0); };
+        // Without a film its terms are no part of f, smooth or not.
+        const bool film = !isZero(p("iridescenceFactor")) && !isZero(p("iridescenceThickness"));
+        const auto own = [&](std::size_t c) { return N(film && p.channel() == c ? 1.0 : 0.0); };
         return {N(0.0),
                 {(1 - metallic) * base / pi, dielectric * f0(p, p.channel()) + metallic * base,
                  dielectric + metallic, p("sheenColorFactor"), p("clearcoatFactor"), own(0), own(1),

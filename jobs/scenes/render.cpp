@@ -180,7 +180,6 @@ public:
         : options_(options),
           listener_(listener),
           limit_(options.seconds),
-          result_(result),
           view_(radians(options.viewTheta), radians(options.viewPhi), radians(options.fieldOfView)),
           columns_(columnsOf(options)),
           lights_(lightsOf(options, view_)),
@@ -293,7 +292,6 @@ private:
     const RenderOptions& options_;
     const Listener& listener_;
     const TimeLimit limit_;
-    Rendered& result_;
     const View view_;
     const Columns columns_;
     const std::vector<Light> lights_;

@@ -42,8 +42,9 @@ std::vector<Case> casesOf() {
         bool anisotropic = false;
         for (const Parameter& parameter : model.parameters)
             for (const FitRange& range : parameter.fit) {
-                // The default's own are those of the empty choice.
-                if (!range.choice.empty()) choices.emplace(range.choice);
+                // The default's own are those of the empty choice. A name alone is a part that is
+                // fitted once it is stated, a film of R, G and B: fit_film_test.
+                if (range.choice.find('=') != range.choice.npos) choices.emplace(range.choice);
                 anisotropic = anisotropic || range.data == FitRange::Data::anisotropic ||
                               !range.follows.empty();
             }

@@ -32,6 +32,7 @@ void Samples::scale(double factor) {
     };
     scaleEach(values);
     scaleEach(sigmas);
+    if (values.empty()) return;
     const auto [least, greatest] = std::ranges::minmax_element(values);
     census.least = *least;
     census.greatest = *greatest;

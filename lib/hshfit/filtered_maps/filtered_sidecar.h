@@ -13,6 +13,7 @@
 
 namespace hshfit::inline filtered_maps {
 
+/// The word `format` of such a file, and that of an export of it.
 inline constexpr const char *filteredMapFormat = "hshfit-filtered-map",
                             *filteredMapExportFormat = "hshfit-gpu-filtered-map";
 

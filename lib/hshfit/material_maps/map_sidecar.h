@@ -16,6 +16,7 @@ class JsonFields;
 
 namespace hshfit::inline material_maps {
 
+/// The word `format` of such a file, and that of an export of it.
 inline constexpr std::string_view materialMapFormat = "hshfit-material-map",
                                   materialMapExportFormat = "hshfit-gpu-map";
 
