@@ -39,8 +39,9 @@ install)
     cmake --install "$build" --prefix "$work/first" >"$work/log"
     mv "$work/first" "$prefix"
     ;;
-# After `./run demo all` the target hshfit is built and nothing else: a folder with the files of this
-# target, those of the configuration and the scripts of the installation installs all but Python's.
+# After `./run demo all` the target hshfit is built and nothing else: a folder with the files of
+# this target, those of the configuration and the scripts of the installation installs all but
+# Python's.
 demo)
     demo=$work/demo
     rm -rf "$demo" "$work/of_demo"
