@@ -44,10 +44,11 @@ constexpr const char* studies = "Studies";
 constexpr const char* lighting = "Light";
 constexpr const char* program = "The program";
 
-/// A function of a wing, or null where that is not built.
-template <class Function>
-constexpr Function* inWing(Wing wing, Function* function) {
-    return isBuilt(wing) ? function : nullptr;
+/// A row of a wing: without its functions where that is not built.
+constexpr Command inWing(Wing wing, Command row) {
+    row.wing = wing;
+    if (!isBuilt(wing)) row.add = nullptr, row.options = nullptr;
+    return row;
 }
 
 constexpr Command table[] = {
@@ -141,41 +142,43 @@ constexpr Command table[] = {
      .example = "hshfit gaussians ggx:alpha=.2 --lobes 3 --kind asg -o ggx.json",
      .add = addGaussians,
      .options = gaussianRows},
-    {.name = "tradeoff",
-     .group = studies,
-     .help = "Size, speed and error of every form of a coefficient file",
-     .file = "tradeoff.cpp",
-     .example = "hshfit tradeoff ggx:alpha=.3 -o trade --bases hsh --max-bytes 4096",
-     .add = inWing(Wing::studies, addTradeoff),
-     .options = inWing(Wing::studies, tradeoffRows),
-     .wing = Wing::studies},
-    {.name = "plan",
-     .group = studies,
-     .help = "The least that a scene needs: the cheapest coefficient file for each material, "
-             "checked in the scene's own light",
-     .file = "plan.cpp",
-     .example = "hshfit plan examples/scenes/car_paint.json -o plan",
-     .add = inWing(Wing::scenes, addPlan),
-     .options = inWing(Wing::scenes, planRows),
-     .wing = Wing::scenes},
-    {.name = "choose",
-     .group = studies,
-     .help = "The smallest faithful material for a renderer: the model itself, lobes, glTF, "
-             "OpenPBR or coefficients, with what each loses to the eye",
-     .file = "choose.cpp",
-     .example = "hshfit choose ggx:alpha=.3,F0=.9/.6/.3 --for gltf -o choose",
-     .add = inWing(Wing::studies, addChoose),
-     .options = inWing(Wing::studies, chooseRows),
-     .wing = Wing::studies},
-    {.name = "stress",
-     .group = studies,
-     .help = "Where the program's numbers stop being good: bases by degree, lobes by width and "
-             "elevation",
-     .file = "stress.cpp",
-     .example = "hshfit stress --max-order 300 --trials 20 -o out/stress",
-     .add = inWing(Wing::studies, addStress),
-     .options = inWing(Wing::studies, stressRows),
-     .wing = Wing::studies},
+    inWing(Wing::studies,
+           {.name = "tradeoff",
+            .group = studies,
+            .help = "Size, speed and error of every form of a coefficient file",
+            .file = "tradeoff.cpp",
+            .example = "hshfit tradeoff ggx:alpha=.3 -o trade --bases hsh --max-bytes 4096",
+            .add = addTradeoff,
+            .options = tradeoffRows}),
+    inWing(
+        Wing::scenes,
+        {.name = "plan",
+         .group = studies,
+         .help = "The least that a scene needs: the cheapest coefficient file for each material, "
+                 "checked in the scene's own light",
+         .file = "plan.cpp",
+         .example = "hshfit plan examples/scenes/car_paint.json -o plan",
+         .add = addPlan,
+         .options = planRows}),
+    inWing(Wing::studies,
+           {.name = "choose",
+            .group = studies,
+            .help = "The smallest faithful material for a renderer: the model itself, lobes, glTF, "
+                    "OpenPBR or coefficients, with what each loses to the eye",
+            .file = "choose.cpp",
+            .example = "hshfit choose ggx:alpha=.3,F0=.9/.6/.3 --for gltf -o choose",
+            .add = addChoose,
+            .options = chooseRows}),
+    inWing(
+        Wing::studies,
+        {.name = "stress",
+         .group = studies,
+         .help = "Where the program's numbers stop being good: bases by degree, lobes by width and "
+                 "elevation",
+         .file = "stress.cpp",
+         .example = "hshfit stress --max-order 300 --trials 20 -o out/stress",
+         .add = addStress,
+         .options = stressRows}),
     {.name = "import",
      .group = files,
      .help = "Coefficients back from a file that hshfit export wrote",
@@ -209,22 +212,25 @@ constexpr Command table[] = {
      .example = "hshfit irradiance sky:type=12,elevation=40,radiance=1 --convention three",
      .add = addIrradiance,
      .options = irradianceRows},
-    {.name = "illuminate",
-     .group = inspection,
-     .help = "Pictures of a scene with global illumination, by path tracing or a radiance cache",
-     .file = "illuminate.cpp",
-     .example = "hshfit illuminate examples/scenes/box.json -o box --samples 16",
-     .add = inWing(Wing::scenes, addIlluminate),
-     .wing = Wing::scenes},
-    {.name = "transfer",
-     .group = lighting,
-     .help = "Precomputed transfer of a scene: how light from all around reaches each vertex, with "
+    inWing(Wing::scenes,
+           {.name = "illuminate",
+            .group = inspection,
+            .help =
+                "Pictures of a scene with global illumination, by path tracing or a radiance cache",
+            .file = "illuminate.cpp",
+            .example = "hshfit illuminate examples/scenes/box.json -o box --samples 16",
+            .add = addIlluminate}),
+    inWing(
+        Wing::scenes,
+        {.name = "transfer",
+         .group = lighting,
+         .help =
+             "Precomputed transfer of a scene: how light from all around reaches each vertex, with "
              "shadows and interreflection",
-     .file = "transfer.cpp",
-     .example = "hshfit transfer examples/scenes/ball_and_wall.json -o ball --rays 400",
-     .add = inWing(Wing::scenes, addTransfer),
-     .options = inWing(Wing::scenes, transferRows),
-     .wing = Wing::scenes},
+         .file = "transfer.cpp",
+         .example = "hshfit transfer examples/scenes/ball_and_wall.json -o ball --rays 400",
+         .add = addTransfer,
+         .options = transferRows}),
     {.name = "sample",
      .group = inspection,
      .help = "Incident directions in proportion to f cos(theta_i), and their efficiency",
@@ -232,30 +238,30 @@ constexpr Command table[] = {
      .example = "hshfit sample ggx:alpha=.2 --outgoing 45,0 --count 100 -o samples.csv",
      .add = addSample,
      .options = sampleRows},
-    {.name = "batch",
-     .group = studies,
-     .help =
-         "Many materials: the commands of a manifest, in processes and on machines side by side",
-     .file = "batch.cpp",
-     .example = "hshfit batch examples/batch/materials.jsonl -o batch",
-     .add = inWing(Wing::batches, addBatch),
-     .wing = Wing::batches},
-    {.name = "svbrdf",
-     .group = studies,
-     .help = "Textures of materials: parameter maps as coefficient textures with mip levels",
-     .file = "svbrdf.cpp",
-     .example = "hshfit svbrdf examples/maps/coin.json -o coin --form low-rank",
-     .add = inWing(Wing::maps, addSvbrdf),
-     .wing = Wing::maps},
-    {.name = "library",
-     .group = fits,
-     .help = "Many materials in a basis learned from them: a few bytes each, nearest ones, and "
-             "materials from few measurements",
-     .file = "library.cpp",
-     .example = "hshfit library learn ggx:alpha=.2,F0=.9/.6/.3 ggx:alpha=.3,F0=.04 "
-                "lambert:kd=.3/.2/.1 -o studio.library",
-     .add = inWing(Wing::library, addLibrary),
-     .wing = Wing::library},
+    inWing(Wing::batches, {.name = "batch",
+                           .group = studies,
+                           .help = "Many materials: the commands of a manifest, in processes and "
+                                   "on machines side by side",
+                           .file = "batch.cpp",
+                           .example = "hshfit batch examples/batch/materials.jsonl -o batch",
+                           .add = addBatch}),
+    inWing(Wing::maps,
+           {.name = "svbrdf",
+            .group = studies,
+            .help = "Textures of materials: parameter maps as coefficient textures with mip levels",
+            .file = "svbrdf.cpp",
+            .example = "hshfit svbrdf examples/maps/coin.json -o coin --form low-rank",
+            .add = addSvbrdf}),
+    inWing(
+        Wing::library,
+        {.name = "library",
+         .group = fits,
+         .help = "Many materials in a basis learned from them: a few bytes each, nearest ones, and "
+                 "materials from few measurements",
+         .file = "library.cpp",
+         .example = "hshfit library learn ggx:alpha=.2,F0=.9/.6/.3 ggx:alpha=.3,F0=.04 "
+                    "lambert:kd=.3/.2/.1 -o studio.library",
+         .add = addLibrary}),
     {.name = "help",
      .group = program,
      .help = "Commands by group and topics; the options of one command; one topic",

@@ -70,9 +70,9 @@ std::pair<bool, double> lessOf(const TriedParts& own) {
     return {!own.trial.failure.empty(), own.trial.loss};
 }
 
-/// The root mean square of what neither a change of the brightness of f nor one that adds white
-/// explains of the residuals of RGB: parts other than films make no other changes with the
-/// directions.
+/// The error of a fit in hue: the root mean square of the residuals of RGB, after a change of the
+/// brightness of f and added white are taken out of each. Parts other than films change no hue with
+/// the directions.
 double errorOfHue(const FitSamples& samples, const FitResult& result, Loss::Kind loss) {
     const std::vector<double> model = predictedValues(result, samples);
     const std::size_t count = samples.size();
