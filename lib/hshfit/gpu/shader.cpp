@@ -247,6 +247,12 @@ std::span<const LanguageEntry> languages() {
     return table;
 }
 
+std::string shaderFileName(const std::string& name, const LanguageEntry& language,
+                           const std::string& prefix) {
+    const bool es = language.language == Language::glslEs;
+    return fmt::format("{}_{}.{}{}", name, prefix, es ? "es." : "", language.extension);
+}
+
 void setLanguageWords(Language language, const std::string& prefix, data& page) {
     setLanguageWords(wordsOf(language, prefix), prefix, page);
 }
