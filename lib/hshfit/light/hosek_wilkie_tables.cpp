@@ -39,7 +39,6 @@ public:
         passSpace();
         begin_ = at_;
         if (at_ == text_.size()) return {};
-        if (text_[at_] == '"') return passString();
         if ((text_[at_] == '-' || text_[at_] == '+') && at_ + 1 < text_.size() &&
             isWordCharacter(text_[at_ + 1]))
             ++at_;
@@ -71,21 +70,12 @@ private:
             } else if (rest[0] == '#' || rest.starts_with("//")) {
                 at_ = std::min(text_.find('\n', at_), text_.size());
             } else if (rest.starts_with("/*")) {
-                begin_ = at_;
-                at_ = text_.find("*/", at_ + 2);
-                if (at_ == std::string_view::npos) fail("a comment has no end");
-                at_ += 2;
+                const std::size_t end = text_.find("*/", at_ + 2);
+                at_ = end == std::string_view::npos ? text_.size() : end + 2;
             } else {
                 return;
             }
         }
-    }
-
-    std::string_view passString() {
-        at_ = text_.find('"', at_ + 1);
-        if (at_ == std::string_view::npos) fail("a text in quotes has no end");
-        ++at_;
-        return text_.substr(begin_, at_ - begin_);
     }
 
     std::string_view text_;
