@@ -344,12 +344,12 @@ TEST(HosekWilkieTables, TruncatedFilesAreRefused) {
 
 /// Finite numbers may still give infinite radiance: at the horizon, or where H is 1 at the sun.
 TEST(HosekWilkieTables, TablesWithoutAFiniteSkyAreRefused) {
-    for (const auto& [coefficient, value] :
+    for (const std::pair<int, double>& changed :
          {std::pair(1, 30.0), {8, 1.0}, {8, -1.0}, {4, 400.0}, {2, 1e200}, {9, 1e12}}) {
         const auto table = [&](const HosekWilkiePlace& p) {
-            return p.coefficient == coefficient ? value : plainHosekWilkie(p);
+            return p.coefficient == changed.first ? changed.second : plainHosekWilkie(p);
         };
-        EXPECT_THROW(skyOf("RGB", table, 3, 0, 40), InputError) << coefficient << ' ' << value;
+        EXPECT_THROW(skyOf("RGB", table, 3, 0, 40), InputError) << changed.first;
     }
 }
 
