@@ -88,6 +88,9 @@ void describe(const FitProblem& problem, const std::vector<double>& x, const Fit
         const double pull = equations.gradient[i];
         if (x[i] <= bounds.lower[i] + reach && pull >= 0) parameter.bound = "lower";
         if (x[i] >= bounds.upper[i] - reach && pull <= 0) parameter.bound = "upper";
+        const double at = parameter.bound == "lower"   ? bounds.lower[i]
+                          : parameter.bound == "upper" ? bounds.upper[i]
+                                                       : x[i];
         // Without a pull worth the name it could as well leave the bound: what the data say of it
         // is then for the covariance to tell.
         const double scale = std::sqrt(std::max(equations.hessian[i * x.size() + i], 0.0));
@@ -96,17 +99,17 @@ void describe(const FitProblem& problem, const std::vector<double>& x, const Fit
         if (i < shapes) {
             const ShapeParameter& shape = sum.shapes()[i];
             parameter.name = shape.name;
-            parameter.value = shape.toValue(x[i]);
+            parameter.value = shape.toValue(at);
             slope.push_back(shape.slope(parameter.value));
             part.shapes.push_back(parameter.value);
         } else {
             const std::size_t k = (i - shapes) / channels, c = (i - shapes) % channels;
             parameter.name = sum.linears()[k].name;
             parameter.channel = names.size() > 1 ? names[c] : "";
-            parameter.value = x[i];
+            parameter.value = at;
             parameter.linear = true;
             slope.push_back(1);
-            part.linear.push_back(x[i]);
+            part.linear.push_back(at);
         }
         if (!fixed[i] && scale > 0)
             part.result.projectedGradient =
