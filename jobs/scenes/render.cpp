@@ -318,7 +318,7 @@ Rendered render(const std::vector<std::string>& specs, const std::string& output
                 const RenderOptions& options, const Listener& listener) {
     checkSpheresPath(output);
     if (options.seconds && options.by == RenderOptions::By::coefficients)
-        throw UsageError(fmt::format("{} bounds integration: add {}",
+        throw UsageError(fmt::format("{} bounds the time of integration, and goes with {}",
                                      Setting{"RenderOptions::seconds"},
                                      Setting{"RenderOptions::by", "integration"}));
     Rendered result;
