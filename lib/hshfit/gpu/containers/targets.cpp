@@ -66,6 +66,10 @@ std::vector<Target> makeTargets() {
                     "materialx",
                     "a .mtlx: open_pbr_surface or gltf_pbr of MaterialX 1.39, fitted",
                     {}});
+    rows.push_back({Target::Kind::material,
+                    "usd",
+                    "a .usda of OpenUSD: UsdPreviewSurface, fitted, and the .mtlx by reference",
+                    {"materialx"}});
     return rows;
 }
 

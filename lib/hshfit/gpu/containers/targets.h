@@ -14,7 +14,7 @@ struct Target {
 
     Kind kind = Kind::container;
     std::string name, summary;
-    std::vector<std::string> parts;  ///< of a renderer or a module: names of the other kinds
+    std::vector<std::string> parts;  ///< written with it: names of other targets
 };
 std::string_view kindName(Target::Kind kind);  ///< "container", …
 
