@@ -16,6 +16,7 @@
 #include <hshfit/files/file_set.h>
 #include <hshfit/files/json_fields.h>
 #include <hshfit/filtered_maps/filtered_sidecar.h>
+#include <hshfit/gpu/binaries/spirv_module.h>
 #include <hshfit/gpu/containers/targets.h>
 #include <hshfit/gpu/forms/form_files.h>
 #include <hshfit/gpu/forms/form_table.h>
@@ -212,6 +213,26 @@ void writeShaders(const Targets& chosen, const ExportOptions& options, const Lis
     }
 }
 
+/// The shader as SPIR-V, by the compiler that is linked.
+void writeSpirv(const Targets& chosen, const ExportOptions& options, const Listener& listener,
+                FileSet& files, Exported& exported) {
+    const auto target = std::ranges::find(chosen, Target::Kind::binary, &Target::kind);
+    if (target == chosen.end()) return;
+    const std::string& prefix = options.shader.prefix;
+    try {
+        const auto words =
+            exported.form
+                ? gpu::spirvModule(*exported.form, {.prefix = prefix, .storage = exported.storage})
+                : gpu::spirvModule(exported.payload, prefix);
+        const std::string file = fmt::format("{}_{}.spv", exported.name, prefix);
+        files.write(file, gpu::spirvBytes(words));
+        exported.texts.push_back({"binary", (*target)->name, file});
+    } catch (const UsageError& error) {
+        if (options.targets != "all") throw;
+        listener.say(fmt::format("left out: {}", error.what()));
+    }
+}
+
 /// The modules of engines, which look up environments for the source, or for what is exported.
 void writeModules(const Targets& chosen, const Source& source, const Representation& shown,
                   const ExportOptions& options, const Listener& listener, FileSet& files,
@@ -290,6 +311,7 @@ void exportForm(const Representation& stored, const std::string& path, const std
          .proposal = proposalTextOf(exported)},
         sourceOpener(), files);
     writeShaders(chosen, options, listener, files, exported);
+    writeSpirv(chosen, options, listener, files, exported);
     writeModules(chosen, source, exported.form->form, options, listener, files, exported);
     writeViewer(stored, source.brdf.get(), lights, options, listener, files, exported);
     files.commit();
@@ -404,6 +426,7 @@ Exported exportCoefficients(const std::string& path, const std::string& folder,
          .proposal = proposalTextOf(exported)},
         files);
     writeShaders(chosen, options, listener, files, exported);
+    writeSpirv(chosen, options, listener, files, exported);
     writeModules(chosen, source, stored, options, listener, files, exported);
     writeViewer(stored, source.brdf.get(), lights, options, listener, files, exported);
     files.commit();

@@ -95,6 +95,7 @@ private:
             case Target::Kind::renderer:
             case Target::Kind::material:
             case Target::Kind::module:
+            case Target::Kind::binary:
                 break;
         }
         throw UsageError(fmt::format("the target {} does not take maps of materials", target.name));

@@ -259,6 +259,26 @@ std::vector<std::uint32_t> toSpirv(gpu::Language language, const std::string& so
     return words;
 }
 
+void validateSpirv(const std::vector<std::uint32_t>& words) {
+    need("spirv-val", "spirv-tools");
+    const Folder folder;
+    std::string bytes;
+    append(bytes, words.data(), words.size());
+    save(folder.file("shader.spv"), bytes);
+    accept(fmt::format("spirv-val --target-env vulkan1.1 '{}'", folder.file("shader.spv")));
+}
+
+std::string disassembled(const std::vector<std::uint32_t>& words) {
+    need("spirv-dis", "spirv-tools");
+    const Folder folder;
+    std::string bytes;
+    append(bytes, words.data(), words.size());
+    save(folder.file("shader.spv"), bytes);
+    const Outcome outcome = command(fmt::format("spirv-dis '{}'", folder.file("shader.spv")));
+    if (outcome.status != 0) throw Refused(outcome.text);
+    return outcome.text;
+}
+
 void validateFragment(const std::string& source) {
     need("glslangValidator", "glslang-tools");
     const Folder folder;

@@ -46,6 +46,10 @@ std::vector<Target> makeTargets() {
         rows.push_back(
             {Target::Kind::shader, std::string(language.name), std::string(language.summary), {}});
     }
+    rows.push_back({Target::Kind::binary,
+                    "spirv",
+                    "a SPIR-V module for Vulkan: a compute shader that evaluates pairs",
+                    {}});
     rows.push_back({Target::Kind::viewer,
                     "viewer",
                     "a page that shows the material: exact, HSH, SH and their difference",
@@ -84,8 +88,8 @@ const Target& find(std::string_view name) {
 }  // namespace
 
 std::string_view kindName(Target::Kind kind) {
-    constexpr std::array<std::string_view, 6> names = {"container", "shader",   "viewer",
-                                                       "renderer",  "material", "module"};
+    constexpr std::array<std::string_view, 7> names = {"container", "shader", "viewer", "renderer",
+                                                       "material",  "module", "binary"};
     return names[static_cast<std::size_t>(kind)];
 }
 
