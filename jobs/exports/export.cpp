@@ -208,7 +208,8 @@ void writeShaders(const Targets& chosen, const ExportOptions& options, const Lis
             continue;
         }
         const std::string file = shaderFile(exported.name, language, options.shader.prefix);
-        files.write(file, source);
+        files.write(file, gpu::fileText(language.language, source,
+                                        std::filesystem::path(file).stem().string()));
         exported.texts.push_back({"shader", std::string(language.name), file});
     }
 }

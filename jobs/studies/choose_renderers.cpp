@@ -35,6 +35,7 @@ const Renderer table[] = {
     {"glsl", "GLSL 4.50", shaded, "glsl"},
     {"glsl-es", "GLSL ES 3.00", shaded, "glsl-es"},
     {"hlsl", "HLSL", shaded, "hlsl"},
+    {"slang", "Slang", shaded, "slang"},
     {"wgsl", "WGSL", shaded, "wgsl"},
     {"metal", "Metal 2", shaded, "metal"},
     {"osl", "OSL 1.10", shaded, "osl"},

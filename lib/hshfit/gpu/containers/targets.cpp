@@ -27,7 +27,7 @@ const Renderer renderers[] = {
     {"godot3", "Godot 3: a shader", {"glsl-es"}, true},
     {"unity", "Unity: a shader, a function for graphs, data", {"bin", "hlsl"}, true},
     {"unreal", "Unreal: the file of a Custom node, a strip", {"exr", "hlsl"}, true},
-    {"falcor", "Falcor: a texture array, a Slang snippet", {"dds", "hlsl"}},
+    {"falcor", "Falcor: a texture array, a Slang module", {"dds", "slang"}},
     {"blender",
      "Blender: a strip for image nodes, parts for an OSL script",
      {"exr", "exr-parts", "osl"}},
