@@ -7,6 +7,7 @@
 
 #include <hshfit/filtered_maps/filtered_sidecar.h>
 #include <hshfit/gpu/error_split.h>
+#include <hshfit/light/catalog.h>
 #include <hshfit/pages/picture_error_json.h>
 #include <hshfit/wings.h>
 
@@ -267,7 +268,7 @@ void runLighting(const ExportArguments& arguments, const Globals& globals) {
     options.errors.tables.order = shared.shader.environmentOrder;
     if (!shared.lights.empty()) options.light = fmt::format("{}", fmt::join(shared.lights, "+"));
     // Errors under the light that is written, and under those of the catalog.
-    options.errors.lights = jobs::catalogLights();
+    options.errors.lights = lightExamples();
     if (!shared.lights.empty())
         options.errors.lights.insert(options.errors.lights.begin(), options.light);
     runExportLighting(arguments.inputs[0], arguments.output, options, globals);

@@ -34,7 +34,7 @@ struct LightJson {
                 {"height", degrees(light.height)}};
     }
     Json operator()(const SkyLight& light) const {
-        constexpr const char* models[] = {"uniform", "overcast", "cie", "preetham"};
+        constexpr const char* models[] = {"uniform", "overcast", "cie", "preetham", "hosek-wilkie"};
         const auto model = static_cast<std::size_t>(light.model);
         Json json = {{"model", models[model]}};
         if (model >= 2) json["sun"] = placeJson(light.sun);

@@ -6,6 +6,7 @@
 #include <hshfit/pages/picture_error_json.h>
 #include <hshfit/pictures/poor.h>
 
+#include <jobs/library/library_export.h>
 #include <jobs/library/material_library.h>
 #include <jobs/library/material_samples.h>
 
@@ -31,6 +32,7 @@ struct LibraryArguments {
     jobs::EncodeOptions encode;  ///< with the limits that are given
     jobs::LearnLibraryOptions learn;
     jobs::ReconstructOptions reconstruct;
+    jobs::LibraryExportOptions exporting;
 
     std::size_t componentCount() const {
         if (components == "auto") return 0;
@@ -300,6 +302,32 @@ void runNext(const LibraryArguments& arguments, const Globals& globals) {
     printJson(document);
 }
 
+void runExport(const LibraryArguments& arguments, const Globals& globals) {
+    jobs::LibraryExportOptions options = arguments.exporting;
+    options.force = globals.force;
+    const jobs::ExportedLibrary exported =
+        jobs::exportLibrary(arguments.inputs[0], arguments.output, options, listenerFor(globals));
+    std::vector<std::string> files;
+    for (const gpu::ExportedFile& file : exported.textures) files.push_back(file.path);
+    files.insert(files.end(), exported.shaders.begin(), exported.shaders.end());
+    if (globals.json) {
+        Json document = headOf(arguments);
+        document["materials"] = exported.materials;
+        document["left_out"] = exported.leftOut;
+        document["components"] = exported.components;
+        document["bytes"] = exported.bytes;
+        document["files"] = files;
+        return printJson(document);
+    }
+    std::string text = fmt::format(
+        "{}: {} materials over {} functions, {} bytes of texels each; {}\n", exported.name,
+        exported.materials.size(), exported.components, exported.bytes, fmt::join(files, ", "));
+    if (!exported.leftOut.empty())
+        text += fmt::format("  left out, with forms of their own: {}\n",
+                            fmt::join(exported.leftOut, ", "));
+    printText(text);
+}
+
 /// One thing that the command does.
 struct Action {
     const char* name;
@@ -321,6 +349,7 @@ constexpr Action actions[] = {
     {"encode", "LIBRARY MATERIAL", 2, 2, Action::Output::required,
      "--components --limit --limit-maximum --limit-flip ", runEncode},
     {"decode", "LIBRARY:NAME", 1, 1, Action::Output::required, "", runDecode},
+    {"export", "LIBRARY", 1, 1, Action::Output::required, "--target --prefix ", runExport},
     {"mix", "LIBRARY:NAME LIBRARY:NAME…", 2, any, Action::Output::required, "--count ", runMix},
     {"list", "LIBRARY", 1, 1, Action::Output::none, "", runList},
     {"search", "LIBRARY MATERIAL", 2, 2, Action::Output::none, "--count ", runSearch},
@@ -386,10 +415,11 @@ void addLibrary(CLI::App& command, Globals& globals) {
     command.add_option(
         "INPUT", arguments->inputs,
         "learn: MATERIAL… (specifications, files, folders); merge: LIBRARY…; encode and search: "
-        "LIBRARY MATERIAL; decode and mix: LIBRARY:NAME; list: LIBRARY; reconstruct: SAMPLES; "
+        "LIBRARY MATERIAL; decode and mix: LIBRARY:NAME; list, export: LIBRARY; reconstruct: "
+        "SAMPLES; "
         "next: [SAMPLES]");
     command.add_option("-o,--output", arguments->output,
-                       "The library, the material, or of next a CSV");
+                       "The library, the material, of next a CSV, of export a folder");
     command
         .add_option(
             "--components", arguments->components,
@@ -445,6 +475,14 @@ void addLibrary(CLI::App& command, Globals& globals) {
         .add_option("--instrument", arguments->instrument,
                     "next: free, or in-plane for a goniometer in the plane of incidence")
         ->check(CLI::IsMember({"free", "in-plane"}))
+        ->capture_default_str();
+    command
+        .add_option(
+            "--target", arguments->exporting.targets,
+            "export: shaders (glsl, glsl-es, hlsl, slang, metal, wgsl) and containers of texels "
+            "(bin, dds, exr, ktx2, …), with commas, or all")
+        ->capture_default_str();
+    command.add_option("--prefix", arguments->exporting.prefix, "export: of the names in shaders")
         ->capture_default_str();
     command.add_option("--bands", arguments->reconstruct.bands,
                        "reconstruct: error bands at pairs of directions: a CSV with wi_x ... wo_z, "

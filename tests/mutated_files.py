@@ -39,6 +39,7 @@ TARGETS = {"alta": ".alta", "astm": ".astm", "cornell": ".brdf", "csv": ".csv", 
            "mit": ".dat", "pbsdf": ".pbsdf", "rgl": ".bsdf", "presets": ".json",
            "gaussians": ".json", "bsdf_xml": ".xml", "merl_slice": ".slice", "utia": ".bin",
            "merl": ".binary", "pab_opto": ".dat", "bird": ".json", "weather": ".epw",
+           "sky_tables": ".h",
            "material_library": ".library", "coefficients": ".json", "gpu_containers": None}
 DATA = {"alta": "alta", "bsdf_xml": "bsdf_xml", "cornell": "cornell", "nist_ptfe": "nist",
         "rgl": "rgl", "merl_slices": "merl_slice", "hostile": "alta", "env": "pictures"}
@@ -61,6 +62,7 @@ COMMANDS = {"pairs": ["eval lambert --pairs {path} -o {out}.csv"],
             "weather": [f"light {kind}:file={{path}},date={moment} -o {{out}}.json --order 3"
                         for kind in ("perez", "sun")
                         for moment in ("1996-06-21,time=12:30", "1995-01-01,time=12:30")],
+            "sky_tables": ["light hosek-wilkie:data={path},elevation=30 -o {out}.json --order 3"],
             "material_library": ["info {path}:b --json", "library list {path}",
                                  "library list {path} --json", "eval {path}:a --wi 30,0 --wo 45,10",
                                  "library decode {path}:a -o {out}.json",

@@ -13,6 +13,25 @@
 HWY_BEFORE_NAMESPACE();
 namespace hshfit::brdfs::HWY_NAMESPACE {
 
+/// A vector turned about the normal; x and y depend on the parameters.
+template <class T>
+struct Turned {
+    T x, y;
+    RealOf<T> z, squared;
+
+    HWY_INLINE RealOf<T> squaredLength() const { return squared; }
+};
+
+/// From the tangent's frame to the frame of a lobe whose axes are turned by an angle.
+template <class T>
+struct Turn {
+    T cosine, sine;  ///< of the angle
+
+    HWY_INLINE Turned<T> operator()(const Incoming<RealOf<T>>& w, RealOf<T> squaredLength) const {
+        return {cosine * w.x + sine * w.y, cosine * w.y - sine * w.x, w.z, squaredLength};
+    }
+};
+
 template <class T>
 class GgxFacets {
 public:

@@ -10,15 +10,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace hshfit::brdfs::HWY_NAMESPACE {
 
-/// A vector turned about the normal; x and y depend on the parameters.
-template <class T>
-struct Turned {
-    T x, y;
-    RealOf<T> z, squared;
-
-    HWY_INLINE RealOf<T> squaredLength() const { return squared; }
-};
-
 template <class T>
 class GltfPbrTerms {
     using R = RealOf<T>;
@@ -33,11 +24,10 @@ public:
           z_(wo.z),
           base_(shape.base),
           coat_(shape.coat),
-          cosine_(shape.cosine),
-          sine_(shape.sine),
+          turn_{shape.cosine, shape.sine},
           sheen_(shape.curve, R(wo.z)) {
         const Incoming<R> outgoing{R(wo.x), R(wo.y), R(wo.z)};
-        outgoing_ = base_.scaledLambda(turned(outgoing, R(1.0)));
+        outgoing_ = base_.scaledLambda(turn_(outgoing, R(1.0)));
         coatOutgoing_ = coat_.scaledLambda(outgoing);
         coatFresnel_ = 0.04 + 0.96 * schlickWeightOf(z_);
         under_ = 1.0 - T(shape.clearcoat) * coatFresnel_;
@@ -56,7 +46,7 @@ public:
         }
         const Incoming<R> half{h.x, h.y, h.z};
         const T lobe =
-            base_.lobe(turned(half, h.squaredLength()), turned(above, R(1.0)), z_, outgoing_);
+            base_.lobe(turn_(half, h.squaredLength()), turn_(above, R(1.0)), z_, outgoing_);
         const T specular(shape_.specular), transmitted(1 - shape_.f0);
         const T reflected = under * lobe;
         if (isZero(shape_.film.weight)) {
@@ -76,9 +66,6 @@ public:
     }
 
 private:
-    HWY_INLINE Turned<T> turned(const Incoming<R>& w, R squaredLength) const {
-        return {cosine_ * w.x + sine_ * w.y, cosine_ * w.y - sine_ * w.x, w.z, squaredLength};
-    }
     /// The share of the diffuse part under the film; writes `lobe` times the film's reflectances.
     HWY_INLINE T underFilm(R cosine, R rise, T lobe, T* term) const {
         const FilmShape<N>& film = shape_.film;
@@ -115,7 +102,8 @@ private:
     OutgoingOf<T> wo_;
     R z_;
     GgxFacets<T> base_, coat_;
-    T cosine_, sine_, outgoing_, coatOutgoing_, under_, outgoingAlbedo_;
+    Turn<T> turn_;
+    T outgoing_, coatOutgoing_, under_, outgoingAlbedo_;
     R coatFresnel_;
     CharlieLobe<T> sheen_;
 };

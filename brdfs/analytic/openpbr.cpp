@@ -22,7 +22,7 @@ using namespace HWY_NAMESPACE;
 HWY_EXPORT(evalOpenpbr);
 HWY_EXPORT(openpbrColumns);
 
-constexpr Laws claims{.nonNegative = true, .mirrorSymmetric = true};
+constexpr Laws claims{.nonNegative = true};
 
 Laws lawsOf(const Parameters& p) {
     Laws laws = claims;
@@ -31,6 +31,7 @@ Laws lawsOf(const Parameters& p) {
     const RoughnessOf<double> base = OpenpbrFormula::baseAxes(values),
                               coat = OpenpbrFormula::coatAxes(values);
     laws.isotropic = base.ax == base.ay && (p.number("coat_weight") == 0 || coat.ax == coat.ay);
+    laws.mirrorSymmetric = laws.isotropic || p.number("geometry_tangent") == 0;
     laws.reciprocal = bare && p.number("base_metalness") == 1;
     // Under layers the sum is that of their albedos, which are known to 1e-3.
     laws.energyConserving = bare && p.number("base_metalness") == 1;
@@ -50,8 +51,12 @@ public:
                      OpenpbrFormula::shape(Values<double>(p, 0))) {}
 
     std::vector<Lobe> lobes(const Direction&) const override {
-        std::vector<Lobe> lobes{halfwayLobe(shape_.base.r.ax, shape_.base.r.ay)};
-        if (shape_.coatWeight > 0) lobes.push_back(halfwayLobe(shape_.coat.r.ax, shape_.coat.r.ay));
+        // The hint has room for x and y alone: of turned lobes the narrow width counts.
+        const auto lobeOf = [&](const RoughnessOf<double>& r) {
+            return halfwayLobe(shape_.sine == 0 ? r.ax : r.ay, r.ay);
+        };
+        std::vector<Lobe> lobes{lobeOf(shape_.base.r)};
+        if (shape_.coatWeight > 0) lobes.push_back(lobeOf(shape_.coat.r));
         return lobes;
     }
     /// Those of the rough diffuse part, as in eon.cpp.
@@ -78,8 +83,13 @@ HasSamplers::Known sampling(const Parameters& p) {
     const Values<double> values(p, 0);
     const RoughnessOf<double> base = OpenpbrFormula::baseAxes(values),
                               coat = OpenpbrFormula::coatAxes(values);
-    HasSamplers::Known known{true, {ggxSampler(base.ax, base.ay)}};
-    if (p.number("coat_weight") > 0) known.samplers.push_back(ggxSampler(coat.ax, coat.ay));
+    // A turned lobe is sampled by its wider width.
+    const bool turned = p.number("geometry_tangent") != 0;
+    const auto samplerOf = [&](const RoughnessOf<double>& r) {
+        return ggxSampler(r.ax, turned ? r.ax : r.ay);
+    };
+    HasSamplers::Known known{true, {samplerOf(base)}};
+    if (p.number("coat_weight") > 0) known.samplers.push_back(samplerOf(coat));
     if (p.number("fuzz_weight") > 0) known.samplers.push_back(powerCosineSampler(normalAxis, 0));
     return known;
 }
@@ -128,6 +138,12 @@ std::vector<Parameter> parameters() {
         unit("specular_roughness", "square root of GGX's alpha", 0.3,
              {{.low = 0.05, .high = 0.95}}),
         unit("specular_roughness_anisotropy", "widens the lobe along x", 0, {stretched}),
+        {.name = "geometry_tangent",
+         .help = "turn of the lobes' x about the normal, radians",
+         .fallback = 0,
+         .min = -2 * pi,
+         .max = 2 * pi,
+         .fit = {{.low = 0, .high = pi, .data = FitRange::Data::anisotropic}}},
         index("specular_ior", "of the dielectric", 1.5),
         unit("coat_weight", "presence of the coat", 0, {{.low = 0.1, .high = 0.9}}),
         colour("coat_color", "of what passes the coat twice", 1),
@@ -174,7 +190,9 @@ const Model& openpbrModel() {
                    {"coat_weight", "coat_color", "coat_roughness", "coat_roughness_anisotropy",
                     "coat_ior", "coat_darkening"}},
                   {"fuzz", "fibres above all", {"fuzz_weight", "fuzz_color", "fuzz_roughness"}},
-                  {"anisotropy", "lobe wider along x", {"specular_roughness_anisotropy"}},
+                  {"anisotropy",
+                   "lobe wider along a direction of the surface",
+                   {"specular_roughness_anisotropy", "geometry_tangent"}},
                   {"thin_film",
                    "interference on the base",
                    {"thin_film_weight", "thin_film_thickness", "thin_film_ior"},

@@ -12,9 +12,11 @@ namespace hshfit::brdfs {
 ///     E_b = base_color mix(1, specular_weight, metalness)
 ///     under = mix(specular_color S F(eta) + (1 - E_s(cos_o)) D, specular_weight S M, metalness)
 /// D: eon of base_weight base_color. S: ggx with ax = r^2 sqrt(2/(1 + (1 - a)^2)), ay = (1 - a) ax,
-/// heights correlated, r roughened by the coat. F: exact, of specular_ior (by coat_ior under a
-/// coat), scaled by specular_weight at normal incidence. M: Schlick's form that specular_color
-/// bends at 82 degrees. Fuzz: Zeltner, Burley & Chiang 2022, by MaterialX's rational fits.
+/// heights correlated, r roughened by the coat, x turned by geometry_tangent (an angle in place of
+/// the vectors geometry_tangent and geometry_coat_tangent). F: exact, of specular_ior (by coat_ior
+/// under a coat), scaled by specular_weight at normal incidence. M: Schlick's form that
+/// specular_color bends at 82 degrees. Fuzz: Zeltner, Burley & Chiang 2022, by MaterialX's rational
+/// fits.
 ///
 /// Approximations: layers by albedo scaling with cos_o alone, hence not reciprocal; absorption in
 /// the coat does not depend on the angle; E_s and E_c are of sqrt(ax ay), to 1e-3; no light that

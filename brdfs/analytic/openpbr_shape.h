@@ -18,6 +18,7 @@ struct FacetAlbedo {
 template <class N>
 struct OpenpbrShape {
     GgxShape<N> base, coat;
+    N cosine, sine;  ///< of the turn of both
     EonShape<N> diffuse;
     N eta, coatEta, coatWeight, fuzzWeight, fuzzRoughness;
     FacetAlbedo<N> specularAlbedo, coatAlbedo;

@@ -54,11 +54,12 @@ public:
           z_(wo.z),
           base_(shape.base),
           coat_(shape.coat),
+          turn_{shape.cosine, shape.sine},
           diffuse_(shape.diffuse, wo),
           fuzz_(shape.fuzzRoughness, {R(wo.x), R(wo.y), R(wo.z)}) {
         const Incoming<R> outgoing{R(wo.x), R(wo.y), R(wo.z)};
-        outgoing_ = base_.scaledLambda(outgoing);
-        coatOutgoing_ = coat_.scaledLambda(outgoing);
+        outgoing_ = base_.scaledLambda(turn_(outgoing, R(1.0)));
+        coatOutgoing_ = coat_.scaledLambda(turn_(outgoing, R(1.0)));
         underFuzz_ = 1.0 - T(shape.fuzzWeight) * fuzz_.albedo;
         under_ = underFuzz_;
         if (!isZero(shape.coatWeight))
@@ -70,7 +71,9 @@ public:
         const Incoming<R> above{wi.x, wi.y, max(wi.z, R(0.0))};
         const HalfVector<R> h(wo_, above);
         const R cosine = h.dotOutgoing(), rest = 1.0 - cosine, rise = schlickWeightOf(cosine);
-        T lobe = under_ * base_.lobe(h, above, z_, outgoing_);
+        const Turned<T> half = turn_({h.x, h.y, h.z}, h.squaredLength()),
+                        incoming = turn_(above, R(1.0));
+        T lobe = under_ * base_.lobe(half, incoming, z_, outgoing_);
         term[8] = term[9] = term[10] = T(0.0);
         if (!isZero(shape_.film.weight)) {
             addFilm(cosine, T(shape_.film.weight) * lobe, term + 8);
@@ -84,7 +87,7 @@ public:
         term[5] = lobe * (cosine * rise * rest);
         term[6] = T(0.0);
         if (!isZero(shape_.coatWeight))
-            term[6] = underFuzz_ * coat_.lobe(h, above, z_, coatOutgoing_) *
+            term[6] = underFuzz_ * coat_.lobe(half, incoming, z_, coatOutgoing_) *
                       reflectanceOf<T>(cosine, shape_.coatEta, N(0.0));
         term[7] = isZero(shape_.fuzzWeight) ? T(0.0) : fuzz(above);
     }
@@ -115,6 +118,7 @@ private:
     OutgoingOf<T> wo_;
     R z_;
     GgxFacets<T> base_, coat_;
+    Turn<T> turn_;
     EonTerms<T> diffuse_;
     OpenpbrFuzz<T> fuzz_;
     T outgoing_, coatOutgoing_, underFuzz_, under_, underFacets_;
@@ -180,8 +184,11 @@ struct OpenpbrFormula {
     }
     template <class N>
     static OpenpbrShape<N> shape(const Values<N>& p) {
+        const N turn = p("geometry_tangent");
         OpenpbrShape<N> shape{.base = {baseAxes(p)},
                               .coat = {coatAxes(p)},
+                              .cosine = cos(turn),
+                              .sine = sin(turn),
                               .diffuse = diffuse(p).shape(),
                               .eta = eta(p),
                               .coatEta = p("coat_ior"),

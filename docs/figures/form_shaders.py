@@ -3,6 +3,7 @@
 rules.
 
     docs/figures/form_shaders.py build FILE.json…
+    docs/figures/form_shaders.py build LIBRARY.library…    instructions of libraries' shaders
 
 `build` is the folder of the build, with `hshfit`, `tests/gpu/shaders/shader_times` and
 `tests/gpu/forms/form_errors`. For each coefficient file: its bytes, its error and the largest
@@ -27,6 +28,9 @@ COLUMNS = ("file", "bytes", "mean log, file", "change by export", "instructions,
            "texture", "ns a pair, constants", "network's over it")
 REPEATS = 41
 COPY = "vec3 hsh_eval(vec3 wo, vec3 wi) { return wo + wi; }"
+LIBRARY = """
+vec3 hsh_eval(vec3 wo, vec3 wi) { return hsh_material(int(gl_WorkGroupID.x), wo, wi); }
+"""
 MAIN = """#version 450
 %s
 layout(local_size_x = 64) in;
@@ -129,6 +133,21 @@ def times(build, folder, names):
     return lines[0], [float(line.split()[-2]) for line in lines[1:]]
 
 
+def libraries(build, paths):
+    """Functions, bytes of texels of a material, and instructions of each library's shader."""
+    print(row(("library", "functions", "bytes a material", "instructions")))
+    print("|" + "---|" * 4)
+    with tempfile.TemporaryDirectory() as folder:
+        for path in paths:
+            answer = json.loads(subprocess.run(
+                [build + "/hshfit", "library", "export", path, "-o", folder, "--target", "glsl",
+                 "--force", "--json"], check=True, capture_output=True, text=True).stdout)
+            with open("%s/%s" % (folder, answer["files"][0]), encoding="ascii") as file:
+                count = instructions(file.read() + LIBRARY, folder)
+            print(row(("`%s`" % os.path.basename(path), str(answer["components"]),
+                       str(answer["bytes"]), str(count))))
+
+
 def main(build, paths):
     print(row(COLUMNS))
     print("|" + "---|" * len(COLUMNS))
@@ -155,4 +174,5 @@ def main(build, paths):
 if __name__ == "__main__":
     if len(sys.argv) < 3:
         sys.exit(__doc__)
-    main(sys.argv[1], sys.argv[2:])
+    kind = libraries if all(path.endswith(".library") for path in sys.argv[2:]) else main
+    kind(sys.argv[1], sys.argv[2:])

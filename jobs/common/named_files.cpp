@@ -79,7 +79,7 @@ void addAt(std::string_view text, const fs::path& folder, std::set<std::string>&
         while (part.starts_with(' ')) part.remove_prefix(1);
         while (part.ends_with(' ')) part.remove_suffix(1);
         // The file is left by a prefix that changes what is read, "grey:FILE", and by a weight,
-        // "0.5 * FILE", and by the key of a weather file, "perez:file=FILE".
+        // "0.5 * FILE", and by the key of a file, "perez:file=FILE".
         while (!part.empty() && !addSpecification(part, folder, files)) {
             const std::size_t mark = part.find_first_of(":*=");
             if (mark == std::string_view::npos) break;

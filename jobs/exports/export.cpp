@@ -49,8 +49,14 @@ struct Source {
     std::string reason;  ///< why there is none
 };
 
-/// Throws InputError for the specification of a BRDF in place of a file of coefficients.
+/// Throws InputError for a library, or the specification of a BRDF, in place of a file of
+/// coefficients.
 void requireCoefficients(const std::string& path) {
+    if (path.ends_with(".library"))
+        throw InputError(fmt::format(
+            "{0}: is a library of materials; the action export of the command library writes one "
+            "shader for all, and a projection of {0}:NAME in the halfway form is exported as such",
+            path));
     if (path == "-" || std::filesystem::exists(path)) return;
     try {
         openBrdf(path, false, Sides::either);
@@ -143,12 +149,6 @@ std::vector<const gpu::Container*> containersOf(const Targets& chosen, const Exp
     return containers;
 }
 
-std::string shaderFile(const std::string& name, const gpu::LanguageEntry& language,
-                       const std::string& prefix) {
-    const bool es = language.language == gpu::Language::glslEs;
-    return fmt::format("{}_{}.{}{}", name, prefix, es ? "es." : "", language.extension);
-}
-
 /// The shader of a language for what is exported.
 std::string sourceOf(gpu::Language language, const Exported& exported,
                      const ExportOptions& options) {
@@ -207,7 +207,8 @@ void writeShaders(const Targets& chosen, const ExportOptions& options, const Lis
             listener.say(fmt::format("left out: {}", error.what()));
             continue;
         }
-        const std::string file = shaderFile(exported.name, language, options.shader.prefix);
+        const std::string file =
+            gpu::shaderFileName(exported.name, language, options.shader.prefix);
         files.write(file, gpu::fileText(language.language, source,
                                         std::filesystem::path(file).stem().string()));
         exported.texts.push_back({"shader", std::string(language.name), file});

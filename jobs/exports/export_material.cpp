@@ -190,6 +190,12 @@ std::vector<MaterialXInput> inputsOf(std::string_view model, const Parameters& p
         });
         const std::vector<double> values = p.colour(parameter.name);
         if (optional && values == std::vector<double>{*parameter.fallback}) continue;
+        if (parameter.name == "geometry_tangent") {
+            inputs.push_back({"geometry_tangent", {degrees(values[0])}, true});
+            if (p.number("coat_weight") > 0 && p.number("coat_roughness_anisotropy") > 0)
+                inputs.push_back({"geometry_coat_tangent", {degrees(values[0])}, true});
+            continue;
+        }
         MaterialXInput input{nodeInput(parameter.name), values};
         if (colour && values.size() == 1) input.values.assign(3, values[0]);
         inputs.push_back(std::move(input));

@@ -32,12 +32,6 @@ View lightingView(const LightingErrorOptions& options) {
 
 }  // namespace
 
-std::vector<std::string> catalogLights() {
-    std::vector<std::string> lights;
-    for (const LightKind& kind : lightKinds()) lights.emplace_back(kind.example);
-    return lights;
-}
-
 std::vector<LightingReference> lightingReferences(const Brdf& truth,
                                                   const LightingErrorOptions& options,
                                                   const Listener& listener) {
@@ -48,7 +42,7 @@ std::vector<LightingReference> lightingReferences(const Brdf& truth,
     const ProgressCall progress = listener.part("integration");
     std::vector<LightSpecification> specs = options.given;
     if (specs.empty())
-        for (const std::string& spec : options.lights.empty() ? catalogLights() : options.lights)
+        for (const std::string& spec : options.lights.empty() ? lightExamples() : options.lights)
             specs.push_back(parseLights(spec));
     for (const LightSpecification& spec : specs) {
         LightingReference reference{.light = spec.text, .lights = spec.lights};

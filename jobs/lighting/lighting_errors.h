@@ -13,7 +13,7 @@
 namespace hshfit::jobs {
 
 struct LightingErrorOptions {
-    /// Specifications of lights; empty: the example of every kind of the catalog.
+    /// Specifications of lights; empty: lightExamples().
     std::vector<std::string> lights = {};
     std::vector<LightSpecification> given = {};  ///< in place of `lights`, if there are any
     int size = 48;                               ///< pixels along an edge of the sphere's picture
@@ -59,8 +59,5 @@ std::vector<LightingError> lightingErrors(std::span<const LightingReference> ref
 
 /// One object for each: light, model, relative_l2, flip, maximum, where, bytes and times.
 nlohmann::ordered_json lightingErrorsJson(std::span<const LightingError> errors);
-
-/// The examples of the catalog of lights.
-std::vector<std::string> catalogLights();
 
 }  // namespace hshfit::jobs

@@ -75,7 +75,8 @@ std::string pageOf(const PictureScene& scene, const std::vector<PageKind>& kinds
         input.materials.push_back(
             transferMaterial(spec, *openSource(spec, true), input.localOrder));
     const ProgressCall progress = listener.part("lights");
-    const std::size_t number = lights.size() + lightKinds().size() + 1;
+    const std::vector<std::string> examples = lightExamples();
+    const std::size_t number = lights.size() + examples.size() + 1;
     for (const NamedLight& light : lights) {
         input.lights.push_back(pageLight(light, input.order));
         input.lights.back().name = gpu::shownName(light.name);
@@ -83,8 +84,7 @@ std::string pageOf(const PictureScene& scene, const std::vector<PageKind>& kinds
     }
     for (PageReference& reference : input.references)
         reference.light = gpu::shownName(reference.light);
-    for (const LightKind& kind : lightKinds()) {
-        const std::string spec(kind.example);
+    for (const std::string& spec : examples) {
         input.lights.push_back(pageLight({spec, {}, parseLights(spec).lights}, input.order));
         if (progress) progress(input.lights.size(), number);
     }

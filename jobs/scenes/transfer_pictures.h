@@ -34,7 +34,7 @@ struct PictureScene {
     const SceneSurfaces& surfaces;
 };
 
-/// A page of the scene under `lights`, under an example of every kind of light, and under sun and
+/// A page of the scene under `lights`, under lightExamples(), and under sun and
 /// sky from morning to evening, with the materials of the scene and those that may replace them.
 std::string pageOf(const PictureScene& scene, const std::vector<PageKind>& kinds,
                    const MatrixClusters* clusters, const std::vector<NamedLight>& lights,

@@ -118,8 +118,10 @@ double offOfIndex(const Truth& truth, const FitResult& result) {
 /// The distance of two values of a parameter; a lobe turned by half a turn is the same lobe.
 double distance(const FreeParameter& parameter, double a, double b) {
     const double apart = std::abs(a - b);
-    return parameter.keys.front() == "anisotropyRotation" ? std::abs(std::remainder(apart, pi))
-                                                          : apart;
+    const std::string& key = parameter.keys.front();
+    return key == "anisotropyRotation" || key == "geometry_tangent"
+               ? std::abs(std::remainder(apart, pi))
+               : apart;
 }
 
 /// `reported`: not converged, or parameters that the fit calls ambiguous, at a bound, or correlated

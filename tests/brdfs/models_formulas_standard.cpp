@@ -178,14 +178,15 @@ double dielectric(double c, double ior) {
 
 TEST(StandardMaterials, OpenpbrMetalIsSchlickBentAt82Degrees) {
     const Vector base{0.9, 0.6, 0.3}, edge{1, 0.7, 0.4};
-    const double weight = 0.8, specular = 0.9, roughness = 0.4, anisotropy = 0.5;
+    const double weight = 0.8, specular = 0.9, roughness = 0.4, anisotropy = 0.5, turn = 0.8;
     const double along = square(roughness) * std::sqrt(2 / (1 + square(1 - anisotropy)));
     expectClose(
         "openpbr:base_color=.9/.6/.3,base_weight=.8,base_metalness=1,specular_weight=.9,"
-        "specular_color=1/.7/.4,specular_roughness=.4,specular_roughness_anisotropy=.5",
+        "specular_color=1/.7/.4,specular_roughness=.4,specular_roughness_anisotropy=.5,"
+        "geometry_tangent=.8",
         [&](const Pair& p) {
             const double c = dotOf(vectorOf(p.wo), halfOf(p));
-            const double lobe = anisotropicLobe(p, along, (1 - anisotropy) * along, 0);
+            const double lobe = anisotropicLobe(p, along, (1 - anisotropy) * along, turn);
             Vector f;
             for (int k = 0; k < 3; ++k) {
                 const double f0 = weight * base[k], max = 1. / 7;

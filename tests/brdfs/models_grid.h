@@ -98,7 +98,8 @@ inline void addStandard(std::vector<Case>& grid) {
               ",base_metalness=.5,base_diffuse_roughness=.7,base_color=.9/.5/.1",
               ",specular_weight=.4,specular_ior=2.5", ",coat_weight=.7,coat_color=.9/.5/.3",
               ",fuzz_weight=.6,fuzz_color=.3/.5/1,fuzz_roughness=.3",
-              ",base_metalness=1,specular_roughness_anisotropy=.6"}) {
+              ",base_metalness=1,specular_roughness_anisotropy=.6",
+              ",coat_weight=.5,coat_roughness_anisotropy=.7,geometry_tangent=1.1"}) {
             const double alpha = std::max(1e-4, std::stod(roughness) * std::stod(roughness));
             grid.push_back(
                 {"openpbr:specular_roughness=" + std::string(roughness) + rest, alpha, alpha});

@@ -59,8 +59,9 @@ double slackOf(std::string_view spec) {
     return 0;
 }
 /// sgd: F cancels where F0 and F1 do, and exp(c x^k) enlarges the errors of x^k by c x^k.
+/// rough-glass: 1 - F cancels towards the critical angle.
 double boundOf(std::string_view spec) {
-    return spec.starts_with("sgd") ? 2e-12 : bound;
+    return spec.starts_with("sgd") || spec.starts_with("rough-glass") ? 2e-12 : bound;
 }
 
 void compare(const std::string& spec, const Brdf& brdf, const Direction& wo, const Points& points) {

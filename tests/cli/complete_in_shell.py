@@ -31,6 +31,7 @@ CASES = [
     ("compare lambert lambert --metrics nega", "negativity"),
     ("export ward.json --target view", "viewer"),
     ("light preeth", "preetham"),
+    ("light hosek-wilkie:turb", "hosek-wilkie:turbidity="),
     ("light sky:elev", "sky:elevation="),
     ("help exit", "exit-codes"),
 ]

@@ -48,6 +48,53 @@ protected:
     static constexpr const char* free = " --limit 10 --limit-maximum 10 --limit-flip 1";
 };
 
+// The tests of the sidecar are values of `eval`; tests/gpu/forms runs the shaders.
+TEST_F(LibraryCommand, OneShaderForAllMaterials) {
+    learn("a.library");
+    const Json made = answer("export " + path("a.library") + " -o " + path("out") +
+                             " --target bin,dds,glsl,wgsl --prefix shop");
+    EXPECT_EQ(made["materials"].size(), 8u);
+    EXPECT_EQ(made["left_out"].size(), 0u);
+    EXPECT_EQ(made["components"], 6);
+    const std::vector<std::string> files{"a.coef.f16.bin", "a.coef.dds", "a_shop.glsl",
+                                         "a_shop.wgsl"};
+    for (const std::string& file : files) EXPECT_FALSE(read(path("out/" + file)).empty()) << file;
+    EXPECT_NE(read(path("out/a_shop.glsl")).find("vec3 shop_material(int material, vec3 wo"),
+              std::string::npos);
+    const Json sidecar = Json::parse(read(path("out/a.hsh.json")));
+    EXPECT_EQ(sidecar["texels_per_material"], made["bytes"].get<int>() / 8);
+    ASSERT_EQ(sidecar["tests"].size(), 48u);
+    const Json& test = sidecar["tests"][2 * 6 + 1];  // 30 degrees on either side of the normal
+    const std::string name = sidecar["materials"][2]["name"];
+    const Answer value =
+        run("eval '" + path("a.library") + ":" + name + "' --wi 30,180 --wo 30,0 --json");
+    ASSERT_EQ(value.code, 0) << value.err;
+    const Json f = Json::parse(value.out)["values"];
+    for (std::size_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(test["value"][c], f[std::min(c, f.size() - 1)], 1e-9) << name;
+}
+
+TEST_F(LibraryCommand, ExportSaysWhatALibraryIsNot) {
+    learn("a.library");
+    const std::string to = " -o " + path("out");
+    const Answer osl = run("library export " + path("a.library") + to + " --target osl");
+    EXPECT_EQ(osl.code, 2);
+    EXPECT_NE(osl.err.find("a library is no 'osl'"), std::string::npos) << osl.err;
+    EXPECT_EQ(run("library export " + path("a.library") + to + " --target gltf").code, 2);
+    EXPECT_EQ(run("library export " + path("a.library") + to + " --prefix 9x").code, 2);
+    ASSERT_EQ(run("library decode '" + path("a.library") + ":ggx_alpha=.4_F0=.04' -o " +
+                  path("one.library"))
+                  .code,
+              0);
+    const Answer none = run("library export " + path("one.library") + to);
+    EXPECT_EQ(none.code, 3);
+    EXPECT_NE(none.err.find("has no basis"), std::string::npos) << none.err;
+    const Answer whole = run("export " + path("a.library") + to + " --target glsl");
+    EXPECT_EQ(whole.code, 3);
+    EXPECT_NE(whole.err.find("action export"), std::string::npos) << whole.err;
+    EXPECT_FALSE(std::filesystem::exists(path("out")));
+}
+
 TEST_F(LibraryCommand, MaterialsOfALibraryAreSpecifications) {
     const Json learned = learn("a.library");
     EXPECT_EQ(learned["materials"], 8);

@@ -1,5 +1,6 @@
 // `info` and `list` of lights, and scenes of `plan` with them.
 
+#include "lib/light/hosek_wilkie_file.h"
 #include "places.h"
 #include "program.h"
 
@@ -149,12 +150,48 @@ TEST_F(Lights, TheListHasEveryKindAndKeepsItsSchema) {
         return std::any_of(rows.begin(), rows.end(),
                            [&](const Json& row) { return row["name"] == name; });
     };
-    for (const char* name : {"sun", "panel", "sky", "preetham", "perez", "uniform"})
+    for (const char* name : {"sun", "panel", "sky", "preetham", "perez", "uniform", "hosek-wilkie"})
         EXPECT_TRUE(named(name)) << name;
     const std::string text = run("list lights").out;
     for (const char* words : {"preetham", "turbidity", "layout", "such as 2024-06-21", "sums"}) {
         EXPECT_NE(text.find(words), std::string::npos) << words;
     }
+}
+
+/// Tables with C = 1 and no other coefficient give a uniform dome of radiance L, whose coefficients
+/// are 2 pi L / sqrt(4 pi) and pi L sqrt(3 / (4 pi)).
+TEST_F(Lights, ASkyByTablesIsALightOfEveryCommand) {
+    const std::string data = path("ArHosekSkyModelData_RGB.h");
+    const std::string tables = hosekWilkieFile("RGB", [](const HosekWilkiePlace& place) {
+        return place.coefficient == 9 ? 2.0 + place.channel : place.coefficient == 2 ? 1.0 : 0.0;
+    });
+    std::ofstream(data) << tables;
+    const std::string sky = "hosek-wilkie:data=" + data + ",elevation=40,albedo=0.2";
+    const Json nine = Json::parse(run("irradiance " + sky + " --json").out)["radiance"];
+    for (std::size_t c = 0; c < 3; ++c) {
+        const double radiance = 0.683 * (2 + static_cast<double>(c));
+        EXPECT_NEAR(nine[0][c], 2 * pi * radiance / std::sqrt(4 * pi), 1e-6);
+        EXPECT_NEAR(nine[2][c], pi * radiance * std::sqrt(3 / (4 * pi)), 1e-6);
+        EXPECT_NEAR(nine[1][c], 0, 1e-6);
+    }
+    EXPECT_EQ(info(sky)["lights"][0]["model"], "hosek-wilkie");
+    EXPECT_EQ(run("light " + sky + " --order 3 -o " + path("sky.json")).code, 0);
+    EXPECT_EQ(
+        run("render lambert --light '" + sky + "+uniform:' --size 8 -o " + path("s.png")).code, 0);
+    // A file that breaks off, one of another kind, and none.
+    std::ofstream(path("half.h")) << tables.substr(0, tables.size() / 2);
+    std::ofstream(path("other.h")) << "int main() {}\n";
+    for (const auto& [name, words] : {std::pair("half.h", "the file ends within the array"),
+                                      {"other.h", "has no tables of the Hosek-Wilkie sky"},
+                                      {"none.h", "none.h"}}) {
+        const std::string wrong = "hosek-wilkie:elevation=40,data=" + path(name);
+        const Answer answer = run("light " + wrong + " -o " + path("wrong.json"));
+        EXPECT_EQ(answer.code, 3) << answer.err;
+        EXPECT_EQ(std::count(answer.err.begin(), answer.err.end(), '\n'), 1) << answer.err;
+        EXPECT_NE(answer.err.find(words), std::string::npos) << answer.err;
+        EXPECT_FALSE(fs::exists(path("wrong.json")));
+    }
+    EXPECT_EQ(run("light " + sky + ",turbidity=11 -o " + path("wrong.json")).code, 2);
 }
 
 TEST_F(Lights, FilesOfCoefficientsAreLights) {

@@ -96,6 +96,36 @@ TEST_F(Cli, FilmsAreInBothFiles) {
     EXPECT_EQ(openpbr.find("coat"), std::string::npos);
 }
 
+// Wider along y and along 30 degrees, where OpenPBR's own axis is x. MaterialX turns clockwise.
+TEST_F(Cli, BrushedMetalsAreTurnedInOpenpbr) {
+    struct Case {
+        const char* spec;
+        double degrees;
+    };
+    for (const auto& [spec, expected] :
+         {Case{"ggx:ax=.15,ay=.4,F0=.9/.6/.3", 90},
+          Case{"grey:gltf-pbr:roughnessFactor=.4,anisotropyStrength=.6,anisotropyRotation="
+               "0.52359877559829887",
+               30}}) {
+        const Answer answer = run(std::string("export ") + spec +
+                                  " --target materialx --name b --json --force -o " + path("out"));
+        ASSERT_EQ(answer.code, 0) << answer.err;
+        const Json file = Json::parse(answer.out)["files"][0];
+        EXPECT_LT(file["loss"]["picture"]["flip"]["mean"], 1e-3) << file;
+        const std::string text = read(path("out/b.mtlx"));
+        EXPECT_EQ(text.find("geometry_coat_tangent"), std::string::npos) << "there is no coat";
+        EXPECT_NE(
+            text.find(R"(name="geometry_tangent" type="vector3" nodename="b_geometry_tangent")"),
+            std::string::npos)
+            << text;
+        const std::string amount = R"(name="amount" type="float" value=")";
+        const std::size_t at = text.find(amount);
+        ASSERT_NE(at, std::string::npos) << text;
+        const double turn = -std::stod(text.substr(at + amount.size()));
+        EXPECT_NEAR(std::remainder(turn - expected, 180), 0, 1e-3) << text;
+    }
+}
+
 // A preset of a fit states its data; another model is fitted; both losses are those of compare's
 // pairs, and name a maximum.
 TEST_F(Cli, LossIsStatedInAnswerAndFiles) {

@@ -176,6 +176,21 @@ void weatherFile(const std::filesystem::path& folder) {
         "1996,6,21,13,60,?9,5,1,79,99900,1200,1325,288,800,700,150,0\n");
 }
 
+/// Tables of the Hosek-Wilkie sky with the same made-up numbers everywhere.
+void skyTables(const std::filesystem::path& folder) {
+    for (const std::string space : {"RGB", "XYZ"}) {
+        std::string text = "// Made up.\n";
+        for (const char channel : {'1', '2', '3'}) {
+            text += "double dataset" + space + channel + "[] = {\n";
+            for (int row = 0; row < 120; ++row) text += "-1,-2e-1,1,2,-2,.5,.1,1,.7,\n";
+            text += "};\ndouble dataset" + space + "Rad" + channel + "[] = {\n";
+            for (int row = 0; row < 20; ++row) text += "1,2,3,4,5,6,\n";
+            text += "};\n";
+        }
+        writeSeed(folder / space, text);
+    }
+}
+
 void coefficientFiles(const std::filesystem::path& folder) {
     using namespace hshfit;
     std::filesystem::create_directories(folder);
@@ -414,6 +429,7 @@ int main(int count, char** arguments) {
     lightPictures(folder / "fuzz_pictures");
     lightSpecifications(folder / "fuzz_lights");
     weatherFile(folder / "fuzz_weather");
+    skyTables(folder / "fuzz_sky_tables");
     meshSeeds(folder / "fuzz_meshes");
     materialLibraries(folder / "fuzz_material_library");
     int number = 0;

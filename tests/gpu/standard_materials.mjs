@@ -53,8 +53,8 @@ const openpbr = {
   base: 'openpbr',
   layers:
     'openpbr:base_color=.9/.5/.1,base_metalness=.4,base_diffuse_roughness=.3,specular_weight=.5,' +
-    'specular_color=.9/1/.8,specular_roughness_anisotropy=.3,specular_ior=1.7,coat_weight=.5,' +
-    'coat_color=.9/.5/.4,coat_roughness=.2,coat_ior=1.4,coat_darkening=.5,fuzz_weight=.3,' +
+    'specular_color=.9/1/.8,specular_roughness_anisotropy=.3,geometry_tangent=.8,' +
+    'specular_ior=1.7,coat_weight=.5,coat_color=.9/.5/.4,coat_roughness=.2,coat_ior=1.4,coat_darkening=.5,fuzz_weight=.3,' +
     'fuzz_color=.2/.4/.8,fuzz_roughness=.7,thin_film_weight=.4,thin_film_ior=1.8,' +
     'thin_film_thickness=.35',
 };

@@ -20,15 +20,14 @@ double wavelength(std::size_t row) {
     return cieFirst + cieStep * static_cast<double>(row);
 }
 
-/// X, Y, Z as sums over the given wavelengths.
-Eigen::Matrix3Xd xyzWeights(std::span<const double> nanometres) {
+/// X, Y, Z as sums over the given wavelengths, of light whose power is `power` of each row.
+template <typename Power>
+Eigen::Matrix3Xd xyzSums(std::span<const double> nanometres, const Power& power) {
     Eigen::Matrix3Xd weights =
         Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(nanometres.size()));
-    double white = 0;
     for (std::size_t row = 0; row < cie1931.size(); ++row) {
         const CieRow& cie = cie1931[row];
-        const Eigen::Vector3d xyz = cie.d65 * Eigen::Vector3d(cie.x, cie.y, cie.z);
-        white += xyz[1];
+        const Eigen::Vector3d xyz = power(cie) * Eigen::Vector3d(cie.x, cie.y, cie.z);
         const double at = wavelength(row);
         const auto above = std::ranges::lower_bound(nanometres, at);
         const auto i = above - nanometres.begin();
@@ -42,7 +41,14 @@ Eigen::Matrix3Xd xyzWeights(std::span<const double> nanometres) {
             weights.col(i) += t * xyz;
         }
     }
-    return weights / white;
+    return weights;
+}
+
+/// The sums of a reflecting surface under D65.
+Eigen::Matrix3Xd xyzWeights(std::span<const double> nanometres) {
+    double white = 0;
+    for (const CieRow& cie : cie1931) white += cie.d65 * cie.y;
+    return xyzSums(nanometres, [](const CieRow& cie) { return cie.d65; }) / white;
 }
 
 /// Rec. ITU-R BT.709: the chromaticities of the primaries, with `white` as R = G = B = 1.
@@ -103,6 +109,14 @@ std::array<double, 3> rec709FromXyz(const std::array<double, 3>& xyz) {
 std::array<double, 3> tristimulus(std::span<const double> nanometres, std::span<const double> f) {
     const Eigen::Map<const Eigen::VectorXd> values(f.data(), static_cast<Eigen::Index>(f.size()));
     const Eigen::Vector3d xyz = xyzWeights(nanometres) * values;
+    return {xyz[0], xyz[1], xyz[2]};
+}
+
+std::array<double, 3> tristimulusOfRadiance(std::span<const double> nanometres,
+                                            std::span<const double> radiance) {
+    const Eigen::Map<const Eigen::VectorXd> values(radiance.data(),
+                                                   static_cast<Eigen::Index>(radiance.size()));
+    const Eigen::Vector3d xyz = xyzSums(nanometres, [](const CieRow&) { return cieStep; }) * values;
     return {xyz[0], xyz[1], xyz[2]};
 }
 

@@ -31,6 +31,12 @@ RgbWeights rgbWeights(std::span<const double> nanometres);
 /// limits.
 std::array<double, 3> tristimulus(std::span<const double> nanometres, std::span<const double> f);
 
+/// CIE XYZ of radiance per nanometre at the given wavelengths, the sum of L xbar over 380 to 780 nm
+/// by 5 nm times 5 nm (Y likewise, so that 683 lm/W times Y is the luminance); linear between
+/// wavelengths, constant beyond.
+std::array<double, 3> tristimulusOfRadiance(std::span<const double> nanometres,
+                                            std::span<const double> radiance);
+
 /// Linear Rec. 709 of CIE XYZ, with R = G = B = 1 for Y = 1 at the chromaticity of D65, (0.3127,
 /// 0.3290). Components of colours beyond the gamut are negative.
 std::array<double, 3> rec709FromXyz(const std::array<double, 3>& xyz);

@@ -255,6 +255,12 @@ std::string fileText(Language language, const std::string& snippets, std::string
     return language == Language::slang ? slangModule(snippets, stem) : snippets;
 }
 
+std::string shaderFileName(const std::string& name, const LanguageEntry& language,
+                           const std::string& prefix) {
+    const bool es = language.language == Language::glslEs;
+    return fmt::format("{}_{}.{}{}", name, prefix, es ? "es." : "", language.extension);
+}
+
 void setLanguageWords(Language language, const std::string& prefix, data& page) {
     setLanguageWords(wordsOf(language, prefix), prefix, page);
 }

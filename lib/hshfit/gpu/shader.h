@@ -20,6 +20,9 @@ struct LanguageEntry {
     std::string_view summary;
 };
 std::span<const LanguageEntry> languages();
+/// NAME_PREFIX.glsl and so on.
+std::string shaderFileName(const std::string& name, const LanguageEntry& language,
+                           const std::string& prefix);
 
 struct ShaderOptions {
     /// The prefix of every name in the snippet, so that one program can contain two snippets.

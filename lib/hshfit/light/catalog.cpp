@@ -5,6 +5,7 @@
 #include <hshfit/error.h>
 #include <hshfit/files/exr_header.h>
 #include <hshfit/light/coefficient_light.h>
+#include <hshfit/light/internal/hosek_wilkie_sky.h>
 #include <hshfit/light/internal/perez_sky.h>
 #include <hshfit/light/internal/picture_terms.h>
 #include <hshfit/light/internal/sun_place.h>
@@ -149,17 +150,34 @@ Rgb factors(const std::vector<double>& asked, const Rgb& colour) {
     return over({asked[0], asked[0], asked[0]}, luminanceOf(colour));
 }
 
-Light preetham(std::string_view owner, const Parameters& p) {
-    onlyOne(owner, p);
-    const Direction towards = placedSun(owner, p).towards;
-    const double turbidity = p.number("turbidity");
-    SkyLight sky = preethamSky(turbidity, towards, {1, 1, 1});
+/// A sky with a unit of its own, scaled to what is asked for, and its ground.
+Light coloured(SkyLight sky, const Parameters& p) {
     Rgb factor{1, 1, 1};
     if (p.given("radiance")) factor = factors(p.colour("radiance"), radianceOf(sky, {0, 0, 1}));
     if (p.given("irradiance")) factor = factors(p.colour("irradiance"), skyIrradiance(sky));
     for (std::size_t c = 0; c < 3; ++c) sky.zenith[c] *= factor[c];
     sky.ground = rgb(p, "ground");
     return sky;
+}
+
+Light preetham(std::string_view owner, const Parameters& p) {
+    onlyOne(owner, p);
+    const Direction towards = placedSun(owner, p).towards;
+    return coloured(preethamSky(p.number("turbidity"), towards, {1, 1, 1}), p);
+}
+
+Light hosekWilkie(std::string_view owner, const Parameters& p) {
+    onlyOne(owner, p);
+    const std::string file = p.choice("data");
+    if (file.empty())
+        throw UsageError(
+            fmt::format("{}: data has to be given; valid: the path of a table of its authors, "
+                        "such as ArHosekSkyModelData_CIEXYZ.h",
+                        owner));
+    const Direction towards = placedSun(owner, p).towards;
+    return coloured(hosekWilkieSky(readHosekWilkieTables(file), file, p.number("turbidity"),
+                                   p.number("albedo"), towards),
+                    p);
 }
 
 Light perez(std::string_view owner, const Parameters& p) {
@@ -186,6 +204,15 @@ LightKind kind(std::string_view name, std::string_view help, std::string_view so
 
 std::vector<LightKind> makeKinds() {
     const Parameter ground = colour("ground", "radiance below the horizon", 0);
+    const std::vector<Parameter> daylight =
+        both(sunPlaceParameters(0),
+             {colour("radiance",
+                     "of the zenith; one number is its luminance, in place of the model's in "
+                     "1000 cd/m^2",
+                     notGiven),
+              colour("irradiance",
+                     "of a horizontal surface, instead; one number is its illuminance", notGiven),
+              ground});
     return {
         kind("uniform", "the same radiance from all directions", "", "uniform:radiance=1",
              {colour("radiance", "from each direction", 1),
@@ -233,18 +260,19 @@ std::vector<LightKind> makeKinds() {
         kind("preetham", "daylight sky with its colours, without the sun's disc",
              "Preetham, Shirley and Smits 1999, 10.1145/311535.311545",
              "preetham:turbidity=3,elevation=30",
-             both({number("turbidity", "2 clear to 10 haze", 3, 2, 10)},
-                  both(sunPlaceParameters(0),
-                       {colour("radiance",
-                               "of the zenith; one number is its luminance, in place of the "
-                               "model's in 1000 cd/m^2",
-                               notGiven),
-                        colour("irradiance",
-                               "of a horizontal surface, instead; one number is its "
-                               "illuminance",
-                               notGiven),
-                        ground})),
-             preetham),
+             both({number("turbidity", "2 clear to 10 haze", 3, 2, 10)}, daylight), preetham),
+        kind("hosek-wilkie", "daylight sky by its authors' tables, without the sun's disc",
+             "Hosek and Wilkie 2012, 10.1145/2185520.2185591",
+             "hosek-wilkie:data=ArHosekSkyModelData_CIEXYZ.h,turbidity=3,elevation=30",
+             both({Parameter{.name = "data",
+                             .help = "the authors' file with tables of RGB, XYZ or wavelengths; "
+                                     "has to be given",
+                             .kind = Parameter::Kind::text,
+                             .choices = {"ArHosekSkyModelData_CIEXYZ.h"}},
+                   number("turbidity", "1 clear to 10 haze", 3, 1, 10),
+                   number("albedo", "share of light that the ground reflects to the sky", 0, 0, 1)},
+                  daylight),
+             hosekWilkie),
         kind("perez", "all-weather sky from measured sunshine, without the sun's disc",
              "Perez, Seals and Michalsky 1993, Solar Energy 50(3)",
              "perez:elevation=40,direct=700,diffuse=110",
@@ -356,7 +384,8 @@ Light parseTerm(std::string_view term, const std::string& folder, InvalidPixels 
     if (const LightKind* row = findKind(term.substr(0, colon))) {
         Parameters p = parseParameters(row->name, row->parameters,
                                        colon == std::string_view::npos ? "" : after(colon));
-        if (p.given("file")) p.words["file"] = within(folder, p.choice("file"));
+        for (const char* key : {"file", "data"})
+            if (p.given(key)) p.words[key] = within(folder, p.choice(key));
         return placed(row->make(row->name, p), p);
     }
     const std::size_t end = pathEnd(term, folder);
@@ -383,6 +412,15 @@ Light parseTerm(std::string_view term, const std::string& folder, InvalidPixels 
 std::span<const LightKind> lightKinds() {
     static const std::vector<LightKind> table = makeKinds();
     return table;
+}
+
+std::vector<std::string> lightExamples() {
+    std::vector<std::string> examples;
+    for (const LightKind& row : lightKinds()) {
+        if (std::ranges::find(row.parameters, "data", &Parameter::name) == row.parameters.end())
+            examples.emplace_back(row.example);
+    }
+    return examples;
 }
 
 const LightKind& studioKind() {

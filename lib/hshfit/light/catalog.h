@@ -56,6 +56,9 @@ struct LightKind {
 /// The analytic lights.
 std::span<const LightKind> lightKinds();
 
+/// The examples of the kinds that need no file.
+std::vector<std::string> lightExamples();
+
 /// The name of several lights: a sky and three soft panels, which viewers and previews have where
 /// no light is given. `make` is null.
 const LightKind& studioKind();

@@ -48,9 +48,7 @@ struct AddLight {
             cap({.axis = {0, 0, 1}, .radius = pi / 2, .above = down}, ground);
             return;
         }
-        const bool peaked =
-            light.model == SkyLight::Model::cie || light.model == SkyLight::Model::preetham;
-        if (peaked && order <= ordersAboutSun)
+        if (light.peaked() && order <= ordersAboutSun)
             cap({.axis = light.sun, .radius = pi, .above = up}, sky);
         else
             cap({.axis = up, .radius = pi / 2}, sky);

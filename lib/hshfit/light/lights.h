@@ -49,20 +49,27 @@ struct SkyShape {
     double a = 0, b = -1, c = 0, d = -1, e = 0, offset = 0;
 };
 
+struct HosekWilkieTerm;
+
 /// The half space above the world's horizon, and a uniform ground below it.
 /// uniform   L = zenith
 /// overcast  L = zenith (1 + 2 cos theta) / 3   (Moon & Spencer 1942; CIE standard overcast sky)
 /// cie       L = zenith F / F(zenith), F of shapes[0]   (ISO 15469:2004; sky.h)
+/// hosekWilkie  L = zenith times the colour of the sum of `terms` (internal/hosek_wilkie_sky.h)
 /// preetham  L = zenith times the colour of the chromaticity (x, y) and the luminance Y, each its
 ///           value at the zenith times F / F(zenith) by shapes[0], [1], [2] of Y, x, y; Y is 1 at
 ///           the zenith. Components of colours beyond the gamut count as 0.
 struct SkyLight {
-    enum class Model { uniform, overcast, cie, preetham };
+    enum class Model { uniform, overcast, cie, preetham, hosekWilkie };
     Model model = Model::uniform;
     Rgb zenith{}, ground{};
     Direction sun{};
     std::array<SkyShape, 3> shapes{};
     std::array<double, 2> chromaticity{};  ///< x and y at the zenith
+    std::shared_ptr<const std::vector<HosekWilkieTerm>> terms = {};
+
+    /// Whether the radiance rises to a peak with a kink at the sun.
+    bool peaked() const { return model != Model::uniform && model != Model::overcast; }
 };
 
 /// The place of directions in a picture (picture_layout.h).

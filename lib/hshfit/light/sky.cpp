@@ -1,6 +1,7 @@
 #include <hshfit/light/sky.h>
 
 #include <hshfit/brdf/colour.h>
+#include <hshfit/light/internal/hosek_wilkie_sky.h>
 #include <hshfit/light/light_samples.h>
 
 #include <algorithm>
@@ -142,6 +143,12 @@ Rgb radianceOf(const SkyLight& light, const Direction& world) {
             const Rgb colour = colourOf(relative(0), light.chromaticity[0] * relative(1),
                                         light.chromaticity[1] * relative(2));
             for (std::size_t c = 0; c < 3; ++c) radiance[c] *= std::max(colour[c], 0.0);
+            break;
+        }
+        case SkyLight::Model::hosekWilkie: {
+            const Rgb colour =
+                hosekWilkieColour(*light.terms, world.z, angleBetween(world, light.sun));
+            for (std::size_t c = 0; c < 3; ++c) radiance[c] *= colour[c];
         }
     }
     return radiance;

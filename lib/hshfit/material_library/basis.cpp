@@ -10,7 +10,6 @@
 namespace hshfit::material_library {
 namespace {
 
-constexpr double topsPerLog = 12;
 constexpr int mostTop = 255;
 
 int halfRange(std::uint8_t width) {

@@ -42,6 +42,9 @@ ChannelCode unpack(const Basis& basis, std::span<const std::uint8_t> code);
 /// The channels of a material from their codes, one after another.
 LogMaterial decode(const Basis& basis, std::span<const std::uint8_t> codes);
 
+/// The bound of a channel whose code begins with `code`: ln(logOffset) + code / topsPerLog.
+inline constexpr double topsPerLog = 12;
+
 /// The numbers of materials in a basis: least squares in the metric of `space`, which has to
 /// outlive this.
 class Encoder {

@@ -14,13 +14,16 @@ constexpr std::size_t mostTerms = 512;
 }  // namespace
 
 LogTerms::LogTerms()
-    : terms_(orders, {.isotropic = true, .bilateral = true, .reciprocal = true}),
-      axes_(HalfwayLobe{.along = roughness, .across = roughness, .turn = 0, .shelf = 1}) {
+    : terms_(orders, {.isotropic = true, .bilateral = true, .reciprocal = true}), axes_(lobe()) {
     assert(terms_.size() <= mostTerms);
     for (std::size_t t = 0; t < terms_.size(); ++t) {
         const HalfwayTerm& term = terms_.list()[t];
         if (term.lobe || term.i > 0 || term.k > 0) kept_.push_back(t);
     }
+}
+
+HalfwayLobe LogTerms::lobe() {
+    return {.along = roughness, .across = roughness, .turn = 0, .shelf = 1};
 }
 
 void LogTerms::evaluate(const Direction& wi, const Direction& wo, double* out) const {

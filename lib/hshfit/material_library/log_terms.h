@@ -24,6 +24,11 @@ public:
     /// out[term] for two directions above the horizon.
     void evaluate(const Direction& wi, const Direction& wo, double* out) const;
 
+    /// The functions that these are some of, the places of these among them, and the axes' lobe.
+    const HalfwayTerms& all() const { return terms_; }
+    const std::vector<std::size_t>& kept() const { return kept_; }
+    static HalfwayLobe lobe();
+
 private:
     HalfwayTerms terms_;
     HalfwayAxes axes_;

@@ -34,9 +34,7 @@ std::vector<Light> withoutCostlySkies(std::span<const Light> lights) {
     std::vector<Light> result;
     for (const Light& light : lights) {
         const auto* sky = std::get_if<SkyLight>(&light);
-        const bool costly =
-            sky && (sky->model == SkyLight::Model::cie || sky->model == SkyLight::Model::preetham);
-        result.push_back(costly ? withSkyPictures({&light, 1}).front() : light);
+        result.push_back(sky && sky->peaked() ? withSkyPictures({&light, 1}).front() : light);
     }
     return result;
 }

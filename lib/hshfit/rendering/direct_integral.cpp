@@ -212,6 +212,10 @@ constexpr int mostLevel = 12;
 /// Share of a picture's flux times width, in radians, of its coarse cells, over the tolerance.
 constexpr double finestPerTolerance = 0.1;
 
+/// The brightness about the sun falls to 1/e over a third of a radian in CIE's skies (d = -3), and
+/// no faster in Preetham's.
+constexpr double skyGradient = 0.3;
+
 /// The level at which nodes are as close as the narrowest lobe is wide.
 int firstLevel(double extent, std::span<const Peak> peaks) {
     double narrowest = 1;
@@ -228,6 +232,7 @@ struct DirectIntegral::Parts {
     Parts(std::span<const Light> lights, double tolerance)
         : cells(withSkyPictures(lights), finestPerTolerance * tolerance) {
         for (const Light& light : lights) {
+            if (!std::holds_alternative<SkyLight>(light)) finest = 0;
             if (!std::holds_alternative<PictureLight>(light) &&
                 !std::holds_alternative<SkyLight>(light)) {
                 compact.push_back(light);
@@ -235,12 +240,17 @@ struct DirectIntegral::Parts {
         }
     }
     LightCells cells;
+    double finest = skyGradient;
     std::vector<Light> compact;  ///< discs, panels, directional lights, series
 };
 
 DirectIntegral::DirectIntegral(std::span<const Light> lights, double tolerance)
     : parts_(std::make_unique<Parts>(lights, tolerance)) {}
 DirectIntegral::~DirectIntegral() = default;
+
+double DirectIntegral::finest() const {
+    return parts_->finest;
+}
 
 PointRadiance DirectIntegral::at(const Brdf& brdf, const Frame& frame, const Direction& wo,
                                  const IntegrationOptions& options) const {

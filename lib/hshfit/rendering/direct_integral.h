@@ -47,6 +47,10 @@ public:
     PointRadiance at(const Brdf& brdf, const Frame& frame, const Direction& wo,
                      const IntegrationOptions& options = {}) const;
 
+    /// Radians over which the light changes, at least, but for edges: those of skies' gradients;
+    /// 0 of all other lights.
+    double finest() const;
+
 private:
     struct Parts;
     std::unique_ptr<Parts> parts_;

@@ -1,14 +1,36 @@
+#include "hosek_wilkie_file.h"
+#include "temporary_folder.h"
+
 #include <hshfit/error.h>
 #include <hshfit/light/catalog.h>
 #include <hshfit/light/light_samples.h>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 
 namespace hshfit {
 namespace {
+
+/// A folder with tables of the name that the catalog's example has.
+const std::string& tablesFolder() {
+    static const test::TemporaryFolder folder;
+    static const std::string path = [] {
+        for (const auto& [space, file] : {std::pair("RGB", "RGB"), {"XYZ", "CIEXYZ"}})
+            std::ofstream(folder / fmt::format("ArHosekSkyModelData_{}.h", file))
+                << test::hosekWilkieFile(space, test::plainHosekWilkie);
+        return folder.path().string();
+    }();
+    return path;
+}
+
+std::string hosekWilkie(const std::string& file, const std::string& keys) {
+    return fmt::format("hosek-wilkie:data={}/ArHosekSkyModelData_{}.h,{}", tablesFolder(), file,
+                       keys);
+}
 
 /// Every kind, most in several ways.
 const std::vector<std::string> specs = {
@@ -32,6 +54,9 @@ const std::vector<std::string> specs = {
     "perez:elevation=40,azimuth=30,direct=300,diffuse=260",
     "perez:elevation=60,direct=800,diffuse=110,ground=20",
     "sun:latitude=50.1,longitude=14.4,date=2024-06-21,time=09:30,zone=2",
+    hosekWilkie("RGB", "elevation=40,azimuth=30"),
+    hosekWilkie("CIEXYZ", "elevation=3,azimuth=-100,ground=1,turbidity=8.5"),
+    hosekWilkie("RGB", "elevation=88,albedo=0.4,irradiance=1/2/3"),
 };
 
 /// Directions over the whole sphere, in no order.
@@ -75,7 +100,7 @@ std::string messageOf(const std::string& spec) {
 
 TEST(LightCatalog, ExamplesParseToOneLightEach) {
     for (const LightKind& kind : lightKinds()) {
-        const LightSpecification parsed = parseLights(std::string(kind.example));
+        const LightSpecification parsed = parseLights(std::string(kind.example), tablesFolder());
         EXPECT_EQ(parsed.lights.size(), 1U) << kind.example;
         EXPECT_TRUE(namesLight(kind.example)) << kind.example;
         EXPECT_EQ(parsed.text, kind.example);
@@ -155,6 +180,8 @@ TEST(LightCatalog, IrradianceIsAsStatedByTwoSetsOfSamples) {
         {"sky:type=14,elevation=2,irradiance=2", {}, {2, 2, 2}, 3e-4},
         {"preetham:turbidity=6,elevation=15,irradiance=2/2.5/3", {}, {2, 2.5, 3}, 3e-4},
         {"perez:elevation=40,direct=300,diffuse=260", {}, {260, 260, 260}, 5e-4},
+        {hosekWilkie("RGB", "elevation=40,irradiance=2/2.5/3"), {}, {2, 2.5, 3}, 5e-4},
+        {hosekWilkie("CIEXYZ", "elevation=4,irradiance=2/2.5/3"), {}, {2, 2.5, 3}, 5e-4},
     };
     for (const Stated& one : cases) {
         const LightSpecification parsed = parseLights(one.spec);

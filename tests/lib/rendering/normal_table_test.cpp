@@ -70,6 +70,22 @@ TEST(NormalTable, ErrorsFallWithTheFourthPowerOfTheStep) {
     EXPECT_GT(fine, 0);
 }
 
+TEST(NormalTable, CellsOfAFullGridHaveEightAround) {
+    const std::vector<Direction> normals = randomNormals(20000);
+    const NormalTable table(normals, 8);
+    ASSERT_EQ(table.middles().size(), 6u * 8 * 8);
+    std::size_t found = 0;
+    for (const std::size_t middle : table.middles()) {
+        const std::vector<std::size_t> around = table.cellsAround(normals[middle]);
+        EXPECT_LE(around.size(), 8u);
+        found += around.size();
+        EXPECT_EQ(std::ranges::count(around, table.cellOf(normals[middle])), 0);
+        for (const std::size_t cell : around)
+            EXPECT_GT(dot(normals[middle], normals[table.middles()[cell]]), std::cos(0.6));
+    }
+    EXPECT_EQ(found, 8u * 6 * 8 * 8);
+}
+
 TEST(NormalTable, KeepsVerticesAboutTheNormalsAlone) {
     const std::vector<Direction> one = {normalised({0.2, 0.3, 0.9})};
     const NormalTable table(one, 20);

@@ -133,8 +133,8 @@ TEST(TracePaths, AgreeWithQuadratureUnderEveryLightOfTheCatalog) {
     const Direction normal{0, 0, 1};
     const Frame frame = frameAt(normal);
     for (const std::string spec : {"lambert", "ggx:alpha=.3"}) {
-        for (const LightKind& kind : lightKinds()) {
-            const std::vector<Light> lights = parseLights(std::string(kind.example)).lights;
+        for (const std::string& example : lightExamples()) {
+            const std::vector<Light> lights = parseLights(example).lights;
             const SurfaceMaterial material = materialOf(spec);
             const SurfaceScene scene({material}, {{"plane", squareMesh(10, 0), 0, {}}}, lights);
             const Direction along = directionFromAngles(radians(150), radians(30));
@@ -149,9 +149,9 @@ TEST(TracePaths, AgreeWithQuadratureUnderEveryLightOfTheCatalog) {
             const PathEstimate found = tracePaths(scene, {0, 0, 1}, along, {.samples = 20000});
             for (std::size_t c = 0; c < 3; ++c) {
                 EXPECT_NEAR(found.radiance[c], expected[c], 4 * found.error[c] + 1e-3 * expected[c])
-                    << spec << " under " << kind.example;
+                    << spec << " under " << example;
                 EXPECT_LE(found.error[c], 0.05 * expected[c] + 1e-12)
-                    << spec << " under " << kind.example;
+                    << spec << " under " << example;
             }
         }
     }
@@ -159,9 +159,9 @@ TEST(TracePaths, AgreeWithQuadratureUnderEveryLightOfTheCatalog) {
 
 /// The mean of radiance over density is the integral of radiance, over a hemisphere.
 TEST(EnvironmentSampler, FindsTheIntegralOfRadiance) {
-    for (const LightKind& kind : lightKinds()) {
-        const EnvironmentSampler sampler(parseLights(std::string(kind.example)).lights);
-        ASSERT_TRUE(sampler.any()) << kind.example;
+    for (const std::string& example : lightExamples()) {
+        const EnvironmentSampler sampler(parseLights(example).lights);
+        ASSERT_TRUE(sampler.any()) << example;
         if (sampler.sample({.5, .5, .5}).delta) continue;
         const Direction pole = sampler.sample({.3, .6, .9}).world;
         double sum = 0, squares = 0;
@@ -172,7 +172,7 @@ TEST(EnvironmentSampler, FindsTheIntegralOfRadiance) {
             other = std::fmod(other + 0.671043606703789, 1);
             third = std::fmod(third + 0.549700477901970, 1);
             const EnvironmentSample sample = sampler.sample({state, other, third});
-            ASSERT_GT(sample.pdf, 0) << kind.example;
+            ASSERT_GT(sample.pdf, 0) << example;
             ASSERT_NEAR(sample.pdf, sampler.pdf(sample.world), 1e-9 * sample.pdf);
             const double inside = dot(sample.world, pole) > 0 ? 1 : 0;
             sum += inside * (sample.radiance[1] / sample.pdf);
@@ -182,11 +182,11 @@ TEST(EnvironmentSampler, FindsTheIntegralOfRadiance) {
         const double error = std::sqrt(std::max(0.0, squares / count - mean * mean) / count);
         // The same integral of radiance over the hemisphere about the pole, by quadrature.
         const double theta = polarAngle(pole), phi = azimuth(pole);
-        const LightSamples nodes = sampleLights(parseLights(std::string(kind.example)).lights,
-                                                Frame({.theta = theta, .phi = phi}), 5);
+        const LightSamples nodes =
+            sampleLights(parseLights(example).lights, Frame({.theta = theta, .phi = phi}), 5);
         double expected = 0;
         for (std::size_t k = 0; k < nodes.count(); ++k) expected += nodes.flux[1][k];
-        EXPECT_NEAR(mean, expected, 4 * error + 2e-3 * expected) << kind.example;
+        EXPECT_NEAR(mean, expected, 4 * error + 2e-3 * expected) << example;
     }
 }
 

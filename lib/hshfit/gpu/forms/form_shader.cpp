@@ -14,8 +14,8 @@
 
 namespace hshfit::embedded {
 extern const std::string_view shader_basis, shader_ends, shader_turn;
-extern const std::string_view form_eval, form_glsl, form_glsl_es, form_glsl_functions, form_header,
-    form_hlsl, form_metal, form_osl, form_sums, form_wgsl;
+extern const std::string_view form_eval, form_glsl, form_glsl_es, form_glsl_functions,
+    form_halfway_axes, form_header, form_hlsl, form_metal, form_osl, form_sums, form_wgsl;
 }  // namespace hshfit::embedded
 
 namespace hshfit::gpu::inline forms {
@@ -122,6 +122,7 @@ void setPartials(std::string_view body, data& page) {
         {"header", embedded::form_header},
         {"sumsBody", embedded::form_sums},
         {"evalBody", embedded::form_eval},
+        {"halfwayAxes", embedded::form_halfway_axes},
         {"formBody", body},
         {"glslFunctions", embedded::form_glsl_functions},
         {"basisBody", embedded::shader_basis},
@@ -137,6 +138,30 @@ void setPartials(std::string_view body, data& page) {
 }
 
 }  // namespace
+
+std::string formText(Language language, const FormPayload& payload, const std::string& prefix,
+                     const FormBody& body) {
+    const FormLanguage words = formLanguage(language);
+    data page;
+    setLanguageWords(language, prefix, page);
+    page.set("letInt", std::string(words.letInt));
+    page.set("toInt", std::string(words.toInt));
+    page.set("varVector", std::string(words.varVector));
+    page.set("words3", std::string(words.words3));
+    page.set("flat", language == Language::osl);
+    page.set("function", "eval");
+    page.set("materials", false);
+    setStorage(payload, body.storage, page);
+    setChannels(body.channels, prefix, language, page);
+    setHeader(payload, page);
+    ShaderCost cost;
+    FormText text{payload, body.constants, page, cost};
+    body.fill(text);
+    page.set("evalFetches", std::to_string(cost.fetches));
+    page.set("evalProducts", std::to_string(cost.products));
+    setPartials(body.body, page);
+    return withoutGaps(filledText(words.text, page));
+}
 
 std::string_view storageName(Storage storage) {
     return std::ranges::find(storages, storage, &decltype(storages)::value_type::first)->second;
@@ -166,24 +191,12 @@ std::string formShaderSource(Language language, const FormPayload& payload,
                                      payload.form.added));
     }
     const FormRow& row = formRow(payload.form.kind());
-    const FormLanguage words = formLanguage(language);
-    data page;
-    setLanguageWords(language, options.prefix, page);
-    page.set("letInt", std::string(words.letInt));
-    page.set("toInt", std::string(words.toInt));
-    page.set("varVector", std::string(words.varVector));
-    page.set("words3", std::string(words.words3));
-    page.set("flat", language == Language::osl);
-    setStorage(payload, storage, page);
-    setChannels(payload.form.head.channels, options.prefix, language, page);
-    setHeader(payload, page);
-    ShaderCost cost;
-    FormText text{payload, storage == Storage::constants, page, cost};
-    row.fill(text);
-    page.set("evalFetches", std::to_string(cost.fetches));
-    page.set("evalProducts", std::to_string(cost.products));
-    setPartials(row.body, page);
-    return withoutGaps(filledText(words.text, page));
+    return formText(language, payload, options.prefix,
+                    {.body = row.body,
+                     .storage = storage,
+                     .constants = storage == Storage::constants,
+                     .channels = payload.form.head.channels,
+                     .fill = row.fill});
 }
 
 }  // namespace hshfit::gpu::inline forms

@@ -39,8 +39,7 @@ public:
           up_(frame.toLocal({0, 0, 1})),
           sun_(frame.toLocal(light.sun)),
           middle_(std::atan2(up_.y, up_.x)),
-          kinked_(light.model == SkyLight::Model::cie || light.model == SkyLight::Model::preetham) {
-    }
+          kinked_(light.peaked()) {}
 
     void add() {
         const double touch = std::min(std::hypot(up_.x, up_.y), 1.0);

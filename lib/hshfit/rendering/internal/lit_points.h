@@ -30,10 +30,12 @@ public:
         const std::size_t now = ++done_;
         if (progress_) progress_(now, total_);
     }
+    /// Further steps that are to be done.
+    void more(std::size_t steps) { total_ += steps; }
 
 private:
     const RenderProgress& progress_;
-    std::size_t total_;
+    std::atomic<std::size_t> total_;
     std::atomic<std::size_t> done_ = 0;
 };
 

@@ -139,6 +139,20 @@ std::size_t NormalTable::cellOf(const Direction& normal) const {
     return cellNumber_[cellIndex(placeOf(normal))];
 }
 
+std::vector<std::size_t> NormalTable::cellsAround(const Direction& normal) const {
+    const Place at = placeOf(normal);
+    std::vector<std::size_t> cells;
+    for (int j = -1; j <= 1; ++j) {
+        for (int i = -1; i <= 1; ++i) {
+            const Direction beside = normalAt(at.face, static_cast<double>(at.column) + 0.5 + i,
+                                              static_cast<double>(at.row) + 0.5 + j);
+            const std::size_t cell = cellNumber_[cellIndex(placeOf(beside))];
+            if (cell != none && (i != 0 || j != 0)) cells.push_back(cell);
+        }
+    }
+    return cells;
+}
+
 double NormalTable::interpolate(const Direction& normal, std::span<double> values) const {
     assert(values.size() == count_);
     const Place at = placeOf(normal);

@@ -29,6 +29,8 @@ public:
 
     /// The cell of a normal, an index of `middles`.
     std::size_t cellOf(const Direction& normal) const;
+    /// The cells beside it, across edges and corners, that have normals.
+    std::vector<std::size_t> cellsAround(const Direction& normal) const;
     /// Interpolates the values at a normal. Returns the azimuth of frameAt(normal).tangent in the
     /// axes that the values are of.
     double interpolate(const Direction& normal, std::span<double> values) const;

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <hshfit/gpu/forms/form_payload.h>
+#include <hshfit/gpu/forms/form_shader.h>
 #include <hshfit/gpu/shader_data.h>
 
 #include <kainjow/mustache.hpp>
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -51,5 +53,19 @@ struct FormText {
     /// The outputs f0, f1, …, one for each sum.
     void setOutputs();
 };
+
+/// A function of a form and how it is filled in.
+struct FormBody {
+    std::string_view body;  ///< the template
+    Storage storage;        ///< of the texels
+    bool constants;         ///< numbers of sums stand in the text
+    Channels channels;      ///< of the function's value
+    std::function<void(FormText&)> fill;
+};
+
+/// The text of a shader; the keys `function` and `materials` of the page are "eval" and false
+/// unless `fill` sets others.
+std::string formText(Language language, const FormPayload& payload, const std::string& prefix,
+                     const FormBody& body);
 
 }  // namespace hshfit::gpu::inline forms

@@ -1,0 +1,181 @@
+#include "library_export.h"
+
+#include <hshfit/error.h>
+#include <hshfit/files/file_set.h>
+#include <hshfit/files/json_fields.h>
+#include <hshfit/gpu/containers/sidecar.h>
+#include <hshfit/gpu/containers/targets.h>
+#include <hshfit/gpu/forms/library_shader.h>
+#include <hshfit/material_library/library_file.h>
+#include <hshfit/material_library/log_terms.h>
+#include <hshfit/material_library/shared_functions.h>
+#include <hshfit/version.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+namespace hshfit::jobs {
+namespace {
+
+namespace ml = material_library;
+using Json = nlohmann::ordered_json;
+
+/// Materials whose values are among the tests.
+constexpr std::size_t testedMaterials = 8;
+
+gpu::SharedSums sumsOf(const ml::Library& library, ExportedLibrary& exported) {
+    gpu::SharedSums sums{.functions = ml::sharedFunctions(library.basis),
+                         .offset = ml::logOffset,
+                         .topFirst = std::log(ml::logOffset),
+                         .topStep = 1 / ml::topsPerLog,
+                         .parts = {},
+                         .materials = {}};
+    for (const auto& [function, scale] : ml::texelParts(library.basis))
+        sums.parts.push_back({function, scale});
+    for (const ml::Material& material : library.materials) {
+        if (material.kind != ml::Kind::coded) {
+            exported.leftOut.push_back(material.name);
+            continue;
+        }
+        exported.materials.push_back(material.name);
+        const std::vector<double> row = ml::texelsOf(library.basis, material);
+        sums.materials.insert(sums.materials.end(), row.begin(), row.end());
+    }
+    exported.components = library.basis.size();
+    return sums;
+}
+
+Json array(const Direction& d) {
+    return {d.x, d.y, d.z};
+}
+
+/// f of the first materials in pairs from the mirror direction to grazing ones.
+Json testsOf(const ml::Library& library, const ExportedLibrary& exported) {
+    Json tests = Json::array();
+    for (std::size_t n = 0; n < std::min(testedMaterials, exported.materials.size()); ++n) {
+        const auto brdf = ml::open(library, *ml::find(library, exported.materials[n]), "material");
+        for (const auto& [in, out, phi] :
+             {std::array{0., 0., 0.}, std::array{30., 30., 180.}, std::array{45., 50., 170.},
+              std::array{60., 20., 90.}, std::array{85., 80., 180.}, std::array{75., 75., 10.}}) {
+            const Direction wo = directionFromAngles(radians(out), 0),
+                            wi = directionFromAngles(radians(in), radians(phi));
+            std::vector<double> f(brdf->channels().count());
+            brdf->eval(wo, {&wi.x, &wi.y, &wi.z, 1}, f.data());
+            if (f.size() == 1) f.resize(3, f[0]);
+            tests.push_back({{"material", n}, {"wo", array(wo)}, {"wi", array(wi)}, {"value", f}});
+        }
+    }
+    return tests;
+}
+
+Json sidecarOf(const std::string& path, const ml::Library& library, const gpu::Texels& texels,
+               const ExportedLibrary& exported, std::span<const gpu::ExportedFile> files) {
+    Json materials = Json::array();
+    for (const std::string& name : exported.materials) {
+        const ml::Material& material = *ml::find(library, name);
+        materials.push_back({{"name", name},
+                             {"source", material.source},
+                             {"mean_log", material.error.meanLog},
+                             {"flip", material.error.flip}});
+    }
+    return {{"format", "hshfit-gpu-library"},
+            {"version", 1},
+            {"generator", std::string("hshfit ") + version},
+            {"library", path},
+            {"value", "f = max(exp(min(Phi_0 + sum_k q_k Phi_k, top)) - offset, 0)"},
+            {"colorspace", "lin_rec709"},
+            {"cos_included", false},
+            {"unit", "1/sr"},
+            {"frame", Json::parse(gpu::frameText())},
+            {"components", exported.components},
+            {"texels_per_material", exported.bytes / 8},
+            {"materials", materials},
+            {"left_out", exported.leftOut},
+            {"sampling", {{"filter", "none"}, {"mip", "none"}, {"lod", 0}, {"srgb", false}}},
+            {"data", Json::parse(gpu::dataText(texels, "stream"))},
+            {"files", Json::parse(gpu::filesText(files))}};
+}
+
+/// Throws UsageError for what a library cannot be.
+std::vector<const gpu::Target*> targetsOf(const std::string& names) {
+    std::vector<const gpu::Target*> chosen;
+    for (const gpu::Target* target : gpu::selectTargets(names)) {
+        const bool osl = target->kind == gpu::Target::Kind::shader && target->name == "osl";
+        const bool fits = (target->kind == gpu::Target::Kind::container ||
+                           target->kind == gpu::Target::Kind::shader) &&
+                          !osl;
+        if (fits)
+            chosen.push_back(target);
+        else if (names != "all")
+            throw UsageError(fmt::format(
+                "a library is no '{}': it is containers and shaders but OSL's; give a material, "
+                "LIBRARY:NAME, to export",
+                target->name));
+    }
+    return chosen;
+}
+
+}  // namespace
+
+ExportedLibrary exportLibrary(const std::string& path, const std::string& folder,
+                              const LibraryExportOptions& options, const Listener& listener) {
+    const std::vector<const gpu::Target*> targets = targetsOf(options.targets);
+    const ml::Library library = ml::readLibrary(path);
+    ExportedLibrary exported;
+    exported.name = std::filesystem::path(path).stem().string();
+    if (library.basis.mean.empty())
+        throw InputError(fmt::format("{}: has no basis; export its materials one by one", path));
+    const gpu::SharedSums sums = sumsOf(library, exported);
+    if (exported.materials.empty())
+        throw InputError(
+            fmt::format("{}: none of its materials is in the basis; export them one by one", path));
+    const gpu::Texels texels = gpu::materialTexels(sums);
+    exported.bytes = sums.stride() * 4 * gpu::numberBytes(texels.number);
+
+    std::vector<const gpu::Container*> containers;
+    for (const gpu::Target* target : targets) {
+        if (target->kind != gpu::Target::Kind::container) continue;
+        const gpu::Container& container = gpu::findContainer(target->name);
+        if (options.targets == "all" && !container.holds(texels.number))
+            listener.say(fmt::format("left out: {} cannot hold {}", container.name,
+                                     gpu::numberName(texels.number)));
+        else
+            containers.push_back(&container);
+    }
+    FileSet files(folder, options.force);
+    const Json tests = testsOf(library, exported);
+    exported.textures = gpu::writeTexels(
+        {.sets = {{gpu::Role::coefficients, &texels}},
+         .facts = {{"form", "library"},
+                   {"materials", std::to_string(exported.materials.size())},
+                   {"layout", "stream"}},
+         .sidecar =
+             [&](std::span<const gpu::ExportedFile> written, std::optional<gpu::Role>) {
+                 Json sidecar = sidecarOf(path, library, texels, exported, written);
+                 sidecar["tests"] = tests;
+                 return gpu::readableSidecar(jsonText(sidecar));
+             },
+         .tests = gpu::readableSidecar(jsonText(
+             Json{{"format", "hshfit-gpu-library-test"}, {"version", 1}, {"tests", tests}}))},
+        containers, exported.name, false, files);
+    for (const gpu::LanguageEntry& language : gpu::languages()) {
+        const bool wanted = std::ranges::any_of(targets, [&](const gpu::Target* target) {
+            return target->kind == gpu::Target::Kind::shader && target->name == language.name;
+        });
+        if (!wanted) continue;
+        const std::string file = gpu::shaderFileName(exported.name, language, options.prefix);
+        files.write(file,
+                    gpu::fileText(language.language,
+                                  gpu::libraryShaderSource(language.language, sums, options.prefix),
+                                  std::filesystem::path(file).stem().string()));
+        exported.shaders.push_back(file);
+    }
+    files.commit();
+    return exported;
+}
+
+}  // namespace hshfit::jobs

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <hshfit/material_library/library.h>
+#include <hshfit/representation/representation.h>
+
+#include <vector>
+
+namespace hshfit::material_library {
+
+/// The functions that the materials of a basis share, as sums of those of the halfway form: channel
+/// 0 is the mean, channel k the step times component k - 1, each the smooth part and the lobe's
+/// together, so that
+///     ln(f + logOffset) = min(Phi_0 + sum_k q_k Phi_k, ln(logOffset) + t / topsPerLog).
+Representation sharedFunctions(const Basis& basis);
+
+/// A texel of four halves, R, G, B and a 0: scale times it is a part of q_k of `function` k.
+struct TexelPart {
+    std::size_t function = 0;
+    double scale = 1;
+};
+/// Those of a material, but for its last texel, which has t: one for each component, and two for
+/// those of more than 12 bits, since halves hold whole numbers up to 2048.
+std::vector<TexelPart> texelParts(const Basis& basis);
+
+/// The texels of a material with codes; a grey one has its numbers three times.
+std::vector<double> texelsOf(const Basis& basis, const Material& material);
+
+}  // namespace hshfit::material_library
