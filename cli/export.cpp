@@ -208,7 +208,7 @@ struct Kind {
     std::string_view name;
 };
 constexpr Kind kinds[] = {{jobs::exports::coefficients, "coefficients"},
-                          {jobs::exports::materials, "the targets gltf and materialx"},
+                          {jobs::exports::materials, "the targets gltf, materialx and usd"},
                           {jobs::exports::maps, "maps of materials"},
                           {jobs::exports::lighting, "--lighting"}};
 
@@ -350,7 +350,8 @@ void runExport(const ExportArguments& arguments, const CLI::App& command, Global
     requireOptions(command, arguments, kind);
     const bool many = jobs::areMany(arguments.inputs);
     if (many && (kind == exports::materials || kind == exports::lighting))
-        throw UsageError("export: the targets gltf and materialx and --lighting take one input");
+        throw UsageError(
+            "export: the targets gltf, materialx and usd and --lighting take one input");
     if (kind == exports::lighting) {
         requirePrefiltered(command, arguments.lighting.models);
         return runLighting(arguments, globals);
@@ -372,7 +373,7 @@ void addExport(CLI::App& command, Globals& globals) {
         .add_option(
             "COEFFS", arguments->inputs,
             "Coefficient file of hshfit project, one or more, or a folder of them; material.json "
-            "of hshfit svbrdf; for gltf, materialx and --lighting a BRDF too")
+            "of hshfit svbrdf; for gltf, materialx, usd and --lighting a BRDF too")
         ->required();
     command
         .add_option("-o,--output", arguments->output,

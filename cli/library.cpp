@@ -477,9 +477,10 @@ void addLibrary(CLI::App& command, Globals& globals) {
         ->check(CLI::IsMember({"free", "in-plane"}))
         ->capture_default_str();
     command
-        .add_option("--target", arguments->exporting.targets,
-                    "export: shaders (glsl, glsl-es, hlsl, metal, wgsl) and containers of texels "
-                    "(bin, dds, exr, ktx2, …), with commas, or all")
+        .add_option(
+            "--target", arguments->exporting.targets,
+            "export: shaders (glsl, glsl-es, hlsl, slang, metal, wgsl) and containers of texels "
+            "(bin, dds, exr, ktx2, …), with commas, or all")
         ->capture_default_str();
     command.add_option("--prefix", arguments->exporting.prefix, "export: of the names in shaders")
         ->capture_default_str();

@@ -43,7 +43,7 @@ holds "16 bits add less than a thousandth to the error of the coefficients" \
     "$(number 'storage @ %') < 0.1 && $(number 'truncation @ %') < 40"
 show export $ward -o out/materials --target gltf --force
 holds "a standard material is near, in the mean" "$(number 'mean log error @') < 0.05"
-show export gltf-pbr:roughnessFactor=0.4 -o out/materials --target materialx --force
+show export gltf-pbr:roughnessFactor=0.4 -o out/materials --target materialx,usd --force
 show export out/phong.json -o out/lighting --lighting split-sum,coefficients --no-error --force
 show export ggx:alpha=.25,F0=.9/.6/.3 -o out/prefiltered --lighting prefiltered \
     --light sky:type=12,elevation=40 --force

@@ -12,6 +12,7 @@ cd "$(dirname "$0")/.."
 # Package or folder | tests that use it | text that a skipped test prints
 parts='
 libvulkan-dev|^ShaderProof.*Vulkan|built without Vulkan (libvulkan-dev)
+glslang-dev|^SpirvModule|built without Vulkan (libvulkan-dev)
 mesa-vulkan-drivers|^ShaderProof.*Vulkan|mesa-vulkan-drivers
 libopengl-dev|^ShaderProof.*OpenGl|built without EGL (libegl-dev, libgl-dev, libopengl-dev)
 libegl-dev|^ShaderProof.*OpenGl|built without EGL (libegl-dev, libgl-dev, libopengl-dev)

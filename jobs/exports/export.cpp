@@ -16,6 +16,7 @@
 #include <hshfit/files/file_set.h>
 #include <hshfit/files/json_fields.h>
 #include <hshfit/filtered_maps/filtered_sidecar.h>
+#include <hshfit/gpu/binaries/spirv_module.h>
 #include <hshfit/gpu/containers/targets.h>
 #include <hshfit/gpu/forms/form_files.h>
 #include <hshfit/gpu/forms/form_table.h>
@@ -208,8 +209,29 @@ void writeShaders(const Targets& chosen, const ExportOptions& options, const Lis
         }
         const std::string file =
             gpu::shaderFileName(exported.name, language, options.shader.prefix);
-        files.write(file, source);
+        files.write(file, gpu::fileText(language.language, source,
+                                        std::filesystem::path(file).stem().string()));
         exported.texts.push_back({"shader", std::string(language.name), file});
+    }
+}
+
+/// The shader as SPIR-V, by the compiler that is linked.
+void writeSpirv(const Targets& chosen, const ExportOptions& options, const Listener& listener,
+                FileSet& files, Exported& exported) {
+    const auto target = std::ranges::find(chosen, Target::Kind::binary, &Target::kind);
+    if (target == chosen.end()) return;
+    const std::string& prefix = options.shader.prefix;
+    try {
+        const auto words =
+            exported.form
+                ? gpu::spirvModule(*exported.form, {.prefix = prefix, .storage = exported.storage})
+                : gpu::spirvModule(exported.payload, prefix);
+        const std::string file = fmt::format("{}_{}.spv", exported.name, prefix);
+        files.write(file, gpu::spirvBytes(words));
+        exported.texts.push_back({"binary", (*target)->name, file});
+    } catch (const UsageError& error) {
+        if (options.targets != "all") throw;
+        listener.say(fmt::format("left out: {}", error.what()));
     }
 }
 
@@ -291,6 +313,7 @@ void exportForm(const Representation& stored, const std::string& path, const std
          .proposal = proposalTextOf(exported)},
         sourceOpener(), files);
     writeShaders(chosen, options, listener, files, exported);
+    writeSpirv(chosen, options, listener, files, exported);
     writeModules(chosen, source, exported.form->form, options, listener, files, exported);
     writeViewer(stored, source.brdf.get(), lights, options, listener, files, exported);
     files.commit();
@@ -405,6 +428,7 @@ Exported exportCoefficients(const std::string& path, const std::string& folder,
          .proposal = proposalTextOf(exported)},
         files);
     writeShaders(chosen, options, listener, files, exported);
+    writeSpirv(chosen, options, listener, files, exported);
     writeModules(chosen, source, stored, options, listener, files, exported);
     writeViewer(stored, source.brdf.get(), lights, options, listener, files, exported);
     files.commit();

@@ -95,6 +95,7 @@ private:
             case Target::Kind::renderer:
             case Target::Kind::material:
             case Target::Kind::module:
+            case Target::Kind::binary:
                 break;
         }
         throw UsageError(fmt::format("the target {} does not take maps of materials", target.name));
@@ -118,7 +119,8 @@ private:
         const bool es = entry.language == gpu::Language::glslEs;
         const std::string file = fmt::format("{}_{}.{}{}", result_.name, options_.prefix,
                                              es ? "es." : "", entry.extension);
-        files_.write(file, text);
+        files_.write(
+            file, gpu::fileText(entry.language, text, std::filesystem::path(file).stem().string()));
         result_.texts.push_back({"shader", name, file});
     }
 

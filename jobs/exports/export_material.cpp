@@ -1,5 +1,7 @@
 #include "export_material.h"
 
+#include "preview_surface.h"
+
 #include <jobs/fits/fit.h>
 #include <jobs/source/picture.h>
 #include <jobs/source/source.h>
@@ -12,6 +14,7 @@
 #include <hshfit/gpu/containers/targets.h>
 #include <hshfit/materials/glb.h>
 #include <hshfit/materials/materialx.h>
+#include <hshfit/materials/usd.h>
 #include <hshfit/meshes/mesh_file.h>
 #include <hshfit/pages/picture_error_json.h>
 #include <hshfit/pictures/picture_strips.h>
@@ -21,6 +24,7 @@
 #include <brdfs/rows/spec.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -200,9 +204,27 @@ std::vector<MaterialXInput> inputsOf(std::string_view model, const Parameters& p
 }
 
 std::string wantedModel(const std::string& target, const Input& input) {
-    if (target == "gltf") return "gltf-pbr";
+    if (target != "materialx") return "gltf-pbr";
     const std::string_view own = modelOf(input.spec);
     return own.empty() ? "openpbr" : std::string(own);
+}
+
+bool hasTarget(const std::string& targets, std::string_view name) {
+    return std::ranges::any_of(gpu::selectTargets(targets),
+                               [&](const Target* target) { return target->name == name; });
+}
+
+/// Whether a target has the input as it is.
+bool holds(const std::string& target, const Input& input) {
+    if (modelOf(input.spec) != wantedModel(target, input)) return false;
+    return target != "usd" || outsidePreview(parametersOf(input.spec)).empty();
+}
+
+/// The models that a target may have, of which the best fit is taken.
+std::vector<PreviewModel> modelsFor(const std::string& target, const Input& input,
+                                    const std::string& parts) {
+    if (target == "usd") return previewModels(parts);
+    return {{wantedModel(target, input), parts}};
 }
 
 /// The material of a target: the input itself, or a fit to it.
@@ -210,21 +232,27 @@ ExportedMaterial materialFor(const std::string& target, const Input& input,
                              const MaterialExportOptions& options, const Listener& listener) {
     ExportedMaterial material;
     material.target = target;
-    const std::string model = wantedModel(target, input);
-    if (modelOf(input.spec) == model) {
+    if (holds(target, input)) {
         material.spec = input.spec;
     } else {
-        FitOptions how{.model = model};
-        how.parts = options.parts;
-        how.accept = true;
-        how.rgb = true;
-        how.advise = options.advise;
-        const Fitted fitted = fit(input.fitTo, "", how, listener);
-        material.spec = brdfs::open(fitted.result.spec)->name();
+        if (modelOf(input.spec) == "gltf-pbr")
+            listener.say(fmt::format("{}: UsdPreviewSurface has no {}; fitted without", input.fitTo,
+                                     fmt::join(outsidePreview(parametersOf(input.spec)), ", ")));
+        std::optional<Fitted> best;
+        for (const PreviewModel& each : modelsFor(target, input, options.parts)) {
+            FitOptions how{.model = each.model};
+            how.parts = each.parts;
+            how.accept = true;
+            how.rgb = true;
+            how.advise = options.advise;
+            Fitted fitted = fit(input.fitTo, "", how, listener);
+            if (!best || fitted.result.loss < best->result.loss) best = std::move(fitted);
+        }
+        material.spec = brdfs::open(best->result.spec)->name();
         material.fitted = true;
-        material.converged = fitted.result.converged;
-        material.search = fitted.search;
-        material.poor = fitted.poor;
+        material.converged = best->result.converged;
+        material.search = best->search;
+        material.poor = best->poor;
     }
     if (!input.brdf) {
         material.reason = input.reason;
@@ -260,6 +288,28 @@ std::string sentence(const ExportedMaterial& material, const std::string& source
                       wi.z, wo.x, wo.y, wo.z);
 }
 
+/// The text or bytes of a file, and its name.
+void setContent(const ExportedMaterials& exported, const Surface& surface, const Input& input,
+                ExportedMaterial& material) {
+    const Parameters parameters = parametersOf(material.spec);
+    const std::string materialX = exported.name + ".mtlx";
+    const std::string said = sentence(material, input.source);
+    if (material.target == "gltf") {
+        material.path = exported.name + ".glb";
+        const Json extras = {{"hshfit", statement(material, input.source)}};
+        material.content = glbBytes(gltfOf(exported.name, parameters), surface, jsonText(extras));
+    } else if (material.target == "usd") {
+        material.path = exported.name + ".usda";
+        material.content = usdText(exported.name, materialX, previewOf(parameters), surface, said);
+    } else {
+        const std::string_view model = modelOf(material.spec);
+        material.path = materialX;
+        material.content =
+            materialXText(exported.name, model == "openpbr" ? "open_pbr_surface" : "gltf_pbr",
+                          inputsOf(model, parameters), said);
+    }
+}
+
 }  // namespace
 
 std::string exportName(const std::string& input) {
@@ -279,7 +329,7 @@ bool areMaterials(const std::string& targets) {
     if (std::ranges::none_of(chosen, isMaterial)) return false;
     if (!std::ranges::all_of(chosen, isMaterial))
         throw UsageError(fmt::format(
-            "'{}': gltf and materialx are written apart from the other targets", targets));
+            "'{}': gltf, materialx and usd are written apart from the other targets", targets));
     return true;
 }
 
@@ -308,6 +358,10 @@ ExportedMaterials makeMaterials(const std::string& text, const MaterialExportOpt
         throw UsageError(fmt::format("'{}': no standard material", options.targets));
     const Surface surface =
         options.mesh.empty() ? sphereSurface() : surfaceOf(readMesh(options.mesh).mesh);
+    if (hasTarget(options.targets, "usd")) {
+        previewModels(options.parts);
+        requireUsdPath((options.name.empty() ? exportName(text) : options.name) + ".mtlx");
+    }
     const Input input = openInput(text, options);
     ExportedMaterials exported{.name = options.name.empty() ? exportName(text) : options.name,
                                .source = input.source,
@@ -316,19 +370,7 @@ ExportedMaterials makeMaterials(const std::string& text, const MaterialExportOpt
                                .files = {}};
     for (const Target* target : gpu::selectTargets(options.targets)) {
         ExportedMaterial material = materialFor(target->name, input, options, listener);
-        const Parameters parameters = parametersOf(material.spec);
-        if (target->name == "gltf") {
-            material.path = exported.name + ".glb";
-            const Json extras = {{"hshfit", statement(material, input.source)}};
-            material.content =
-                glbBytes(gltfOf(exported.name, parameters), surface, jsonText(extras));
-        } else {
-            const std::string_view model = modelOf(material.spec);
-            material.path = exported.name + ".mtlx";
-            material.content =
-                materialXText(exported.name, model == "openpbr" ? "open_pbr_surface" : "gltf_pbr",
-                              inputsOf(model, parameters), sentence(material, input.source));
-        }
+        setContent(exported, surface, input, material);
         if (material.picture)
             material.pictures = fmt::format("{}_{}.png", exported.name, target->name);
         material.bytes = material.content.size();

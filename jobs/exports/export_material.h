@@ -71,7 +71,8 @@ ExportedMaterials makeMaterials(const std::string& input, const MaterialExportOp
 /// Writes `input` as standard materials to `folder`: all files or none. A specification or preset
 /// of the models gltf-pbr and openpbr is written as it is; anything else, and the source of a
 /// coefficient file, is fitted first, by the default loss of fit(). The target gltf takes gltf-pbr;
-/// materialx takes either, and openpbr for anything else. Colours are linear Rec. 709. Where the
+/// materialx takes either, and openpbr for anything else; usd takes a gltf-pbr that
+/// UsdPreviewSurface holds, and comes with materialx. Colours are linear Rec. 709. Where the
 /// source opens, NAME_TARGET.png shows spheres of source, material and difference (PictureStrip).
 /// Throws UsageError, InputError, NumericError and OutputError.
 ExportedMaterials exportMaterials(const std::string& input, const std::string& folder,

@@ -36,7 +36,7 @@ std::vector<Word> wrapWords() {
 constexpr OptionRow exportRows[] = {
     OptionRow{"target", at<&ExportOptions::targets>,
               "all that is possible, or containers, languages, renderers, three and viewer from "
-              "hshfit list targets; or gltf, materialx: a material fitted to the source"}
+              "hshfit list targets; or gltf, materialx, usd: a material fitted to the source"}
         .takes({targetWords, Syntax::list})
         .inPython("targets"),
     OptionRow{"outgoing", at<&ExportOptions::outgoing>,
@@ -117,12 +117,12 @@ constexpr OptionRow exportRows[] = {
 
 constexpr OptionRow materialRows[] = {
     OptionRow{"mesh", at<&MaterialExportOptions::mesh>,
-              "With gltf: OBJ, PLY or glTF file, +y up (default: a sphere)"}
+              "With gltf and usd: OBJ, PLY or glTF file, +y up (default: a sphere)"}
         .takes({.files = Files::read})
         .onlyFor(exports::materials),
     OptionRow{"extensions", at<&MaterialExportOptions::parts>,
-              "With gltf and materialx, of a fit: auto for the extensions (of OpenPBR: lobes) that "
-              "held-out directions find worth it, none, all, or names with commas"}
+              "With gltf, materialx and usd, of a fit: auto for the extensions (of OpenPBR: lobes) "
+              "that held-out directions find worth it, none, all, or names with commas"}
         .onlyFor(exports::materials),
 };
 

@@ -168,7 +168,10 @@ ExportedLibrary exportLibrary(const std::string& path, const std::string& folder
         });
         if (!wanted) continue;
         const std::string file = gpu::shaderFileName(exported.name, language, options.prefix);
-        files.write(file, gpu::libraryShaderSource(language.language, sums, options.prefix));
+        files.write(file,
+                    gpu::fileText(language.language,
+                                  gpu::libraryShaderSource(language.language, sums, options.prefix),
+                                  std::filesystem::path(file).stem().string()));
         exported.shaders.push_back(file);
     }
     files.commit();

@@ -173,9 +173,12 @@ Json writeLightingShaders(const LightingModel& model, const LightingTables& tabl
             continue;
         }
         const bool es = language.language == gpu::Language::glslEs;
-        const Json file = output.add(fmt::format("_{}_{}.{}{}", output.options.prefix, model.name,
-                                                 es ? "es." : "", language.extension),
-                                     lighting::lightingShaderSource(language.language, shader));
+        const std::string stem = fmt::format("_{}_{}", output.options.prefix, model.name);
+        const Json file =
+            output.add(fmt::format("{}.{}{}", stem, es ? "es." : "", language.extension),
+                       gpu::fileText(language.language,
+                                     lighting::lightingShaderSource(language.language, shader),
+                                     output.name + stem));
         shaders.push_back({{"target", language.name}, {"path", file["path"]}});
     }
     return shaders;

@@ -37,8 +37,9 @@ std::vector<choice::Candidate> candidatesFor(const CandidateSource& source,
     const auto takes = [&](const choice::Candidate& candidate) {
         return std::ranges::find(renderer.kinds, candidate.kind) != renderer.kinds.end();
     };
-    if (!takes(all.back())) all.pop_back();
     std::erase_if(all, [&](const choice::Candidate& candidate) {
+        const auto kind = std::ranges::find(candidateKinds(), candidate.kind, &CandidateKind::name);
+        if (kind->alone && !takes(candidate)) return true;
         return !kinds.empty() && std::ranges::find(kinds, candidate.kind) == kinds.end();
     });
     std::ranges::stable_sort(all, [&](const auto& a, const auto& b) {

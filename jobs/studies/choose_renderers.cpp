@@ -29,11 +29,13 @@ const Renderer table[] = {
     {"blender", "Blender", engine, "blender"},
     {"gltf", "readers of glTF 2.0", {"gltf"}},
     {"openpbr", "renderers with OpenPBR Surface, by MaterialX", {"openpbr"}},
+    {"usd", "readers of OpenUSD, with MaterialX or without", {"usd"}},
     {"mitsuba", "Mitsuba 3, by its plugin measured", {"bsdf"}},
     {"pbrt", "pbrt-v4, by its material measured", {"bsdf"}},
     {"glsl", "GLSL 4.50", shaded, "glsl"},
     {"glsl-es", "GLSL ES 3.00", shaded, "glsl-es"},
     {"hlsl", "HLSL", shaded, "hlsl"},
+    {"slang", "Slang", shaded, "slang"},
     {"wgsl", "WGSL", shaded, "wgsl"},
     {"metal", "Metal 2", shaded, "metal"},
     {"osl", "OSL 1.10", shaded, "osl"},
@@ -44,9 +46,10 @@ constexpr CandidateKind kindTable[] = {
     {"lobes", "fits of Lambert and GGX lobes"},
     {"gltf", "glTF's material"},
     {"openpbr", "OpenPBR Surface"},
+    {"usd", "UsdPreviewSurface of OpenUSD, with MaterialX by reference", true},
     {"halfway", "the halfway form"},
     {"coefficients", "both directions in a basis, or coefficients per outgoing direction"},
-    {"bsdf", "a file of the RGL format"},
+    {"bsdf", "a file of the RGL format", true},
 };
 
 }  // namespace

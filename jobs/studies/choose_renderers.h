@@ -19,6 +19,7 @@ struct Renderer {
 /// A kind of candidates.
 struct CandidateKind {
     std::string_view name, help;
+    bool alone = false;  ///< measured only for renderers that take it
 };
 std::span<const CandidateKind> candidateKinds();
 /// Throws UsageError that lists the known ones.

@@ -51,6 +51,7 @@ struct StandardMaterial {
 constexpr StandardMaterial standardMaterials[] = {
     {"gltf", "glTF material", "gltf", 20},
     {"openpbr", "OpenPBR Surface", "materialx", 40},
+    {"usd", "UsdPreviewSurface", "usd", 60},
 };
 
 /// Four bytes for each number of a specification, as for what coefficient files add.
@@ -110,7 +111,8 @@ Made fittedLobes(const CandidateSource& source, const char* model) {
 
 Made standardMaterial(const CandidateSource& source, const char* target) {
     const MaterialExportOptions how{.targets = target, .name = source.name, .advise = false};
-    const ExportedMaterial made = makeMaterials(source.spec, how).files.at(0);
+    const std::vector<ExportedMaterial> all = makeMaterials(source.spec, how).files;
+    const ExportedMaterial& made = all.back();  // MaterialX precedes a layer that refers to it
     return {.brdf = openBeside(made.spec, source.brdf),
             .spec = made.spec,
             .bytes = formulaBytes(made.spec),
@@ -118,7 +120,9 @@ Made standardMaterial(const CandidateSource& source, const char* target) {
                 "export", source.spec,
                 {{"ExportOptions::targets", target}, {"ExportOptions::name", source.name}},
                 source.name)},
-            .write = [=](FileSet& files) { files.write(made.path, made.content); }};
+            .write = [=](FileSet& files) {
+                for (const ExportedMaterial& each : all) files.write(each.path, each.content);
+            }};
 }
 
 Made converted(const CandidateSource& source) {

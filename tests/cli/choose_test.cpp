@@ -146,6 +146,17 @@ TEST_F(ChooseCommand, WritesThePageAndTheMaterial) {
     EXPECT_EQ(strips, 2 * document["rows"].size());
 }
 
+TEST_F(ChooseCommand, WritesALayerOfUsdWithItsMaterialX) {
+    const Answer answer = run(std::string("choose ") + matte +
+                              " --kinds lobes,usd --for usd --json -o " + path("out"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "choose"));
+    std::set<std::string> names;
+    for (const auto& file : fs::directory_iterator(path("out")))
+        names.insert(file.path().extension());
+    EXPECT_EQ(names, (std::set<std::string>{".html", ".json", ".mtlx", ".usda"}));
+}
+
 TEST_F(ChooseCommand, RecommendsNothingBeyondTheStatedError) {
     const Answer answer =
         run(std::string("choose ") + plastic + quick + " --for gltf --error 0 -o " + path("out"));

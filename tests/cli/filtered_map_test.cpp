@@ -139,7 +139,7 @@ TEST_F(FilteredMap, ExportsKeepTheirSchemasAndTheirValuesAreThoseOfEval) {
         ASSERT_EQ(made("-o " + path("map") + " --force --checks 0 --form " + form).code, 0);
         const Answer answer =
             run("export " + path("map/material.json") + " -o " + path("out") +
-                " --force --json --target ktx2,exr-parts,glsl-es,glsl,hlsl,wgsl,metal,osl");
+                " --force --json --target ktx2,exr-parts,glsl-es,glsl,hlsl,slang,wgsl,metal,osl");
         ASSERT_EQ(answer.code, 0) << answer.err;
         EXPECT_TRUE(keepsSchema(answer.out, "export_map"));
         EXPECT_TRUE(keepsSchema(bytes("out/material.hsh.json"), "gpu_filtered_map"));

@@ -20,7 +20,7 @@ protected:
     /// answer, and the sidecar as `written`.
     Json exported(const std::string& name, const std::string& options, Json& written) {
         const Answer answer = run("export " + path(name + ".json") + " -o " + path("out") +
-                                  " --lighting all --target glsl,hlsl,wgsl,glsl-es --light "
+                                  " --lighting all --target glsl,hlsl,slang,wgsl,glsl-es --light "
                                   "uniform:radiance=2 --json " +
                                   options);
         EXPECT_EQ(answer.code, 0) << answer.err;
@@ -56,7 +56,7 @@ TEST_F(Lighting, TablesLightAndShadersOfAFormAreWrittenWithTheirErrors) {
         EXPECT_LT(error["relative_l2"].get<double>(), 5e-3) << error;
     }
     EXPECT_EQ(uniform, 4u);
-    for (const Json& model : document["models"]) EXPECT_EQ(model["shaders"].size(), 4u);
+    for (const Json& model : document["models"]) EXPECT_EQ(model["shaders"].size(), 5u);
     // KTX 2.0: vkFormat, faceCount, levelCount; the level index names the largest level first,
     // which lies last.
     const std::string cube = read(path("out/grey.split-sum.cube.ktx2"));

@@ -46,7 +46,7 @@ TEST_P(MapExportForms, FilesKeepTheirSchemasAndHoldTheTexels) {
     const std::string map = made(GetParam());
     const Answer answer =
         run("export " + map + " -o " + path("out") +
-            " --target ktx2,exr-parts,glsl-es,glsl,hlsl,wgsl,metal,osl,viewer" + " --json");
+            " --target ktx2,exr-parts,glsl-es,glsl,hlsl,slang,wgsl,metal,osl,viewer" + " --json");
     ASSERT_EQ(answer.code, 0) << answer.err;
     EXPECT_TRUE(keepsSchema(answer.out, "export_map"));
     const Json said = Json::parse(answer.out);

@@ -9,6 +9,9 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace {
 
@@ -209,6 +212,74 @@ TEST_F(Cli, DefaultFitsHaveNothingThatTheSourceDoesNotShow) {
     EXPECT_EQ(chalk.find("ior"), std::string::npos) << chalk;
 }
 
+/// The value of an input of the UsdPreviewSurface of a layer.
+std::string inputOf(const std::string& layer, const std::string& name) {
+    const std::string key = " inputs:" + name + " = ";
+    const std::size_t first = layer.find(key);
+    if (first == std::string::npos) return "none";
+    return layer.substr(first + key.size(), layer.find('\n', first) - first - key.size());
+}
+
+// The material of MaterialX beside it is at the place where OpenUSD's reader puts surfacematerials.
+TEST_F(Cli, UsdHasTheParametersThatAreGivenAndMaterialXByReference) {
+    const std::string spec =
+        "gltf-pbr:baseColorFactor=.9/.5/.1,metallicFactor=0,roughnessFactor=.4,clearcoatFactor=.5,"
+        "clearcoatRoughnessFactor=.125";
+    const Answer answer =
+        run("export " + spec + " --target usd --name 'paint 1' --json -o " + path("out"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "export_materials"));
+    const Json files = Json::parse(answer.out)["files"];
+    ASSERT_EQ(files.size(), 2u);
+    EXPECT_EQ(files[1]["path"], "paint 1.usda");
+    EXPECT_FALSE(files[1]["fitted"]);
+    const std::string layer = read(path("out/paint 1.usda"));
+    EXPECT_EQ(layer.substr(0, 10), "#usda 1.0\n");
+    for (const auto& [name, value] :
+         std::vector<std::pair<std::string, std::string>>{{"diffuseColor", "(0.9, 0.5, 0.1)"},
+                                                          {"metallic", "0"},
+                                                          {"roughness", "0.4"},
+                                                          {"ior", "1.5"},
+                                                          {"clearcoat", "0.5"},
+                                                          {"clearcoatRoughness", "0.125"}})
+        EXPECT_EQ(inputOf(layer, name), value) << name;
+    EXPECT_NE(layer.find("@./paint 1.mtlx@</MaterialX/Materials/paint_1>"), layer.npos);
+    EXPECT_NE(read(path("out/paint 1.mtlx")).find("<surfacematerial name=\"paint_1\""),
+              std::string::npos);
+    EXPECT_NE(layer.find("metersPerUnit = 1\n    upAxis = \"Y\""), layer.npos);
+}
+
+// Fits keep to inputs that the surface has; the loss is stated in the layer.
+TEST_F(Cli, UsdIsFittedWhereTheSurfaceHasNoInput) {
+    const Answer answer =
+        run("export gltf-pbr:baseColorFactor=.6/.3/.2,metallicFactor=0,sheenColorFactor=.5,"
+            "sheenRoughnessFactor=.5 --target usd --extensions none --json --name c -o " +
+            path("out"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_NE(answer.err.find("no sheenColorFactor"), std::string::npos) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "export_materials"));
+    const Json file = Json::parse(answer.out)["files"][1];
+    EXPECT_EQ(file["target"], "usd");
+    EXPECT_TRUE(file["fitted"]);
+    const std::string metallic = inputOf(read(path("out/c.usda")), "metallic");
+    EXPECT_TRUE(metallic == "0" || metallic == "1") << metallic;
+    EXPECT_EQ(file["spec"].get<std::string>().find("sheenColorFactor"), std::string::npos);
+}
+
+TEST_F(Cli, UsdStatesTheLossOfAMetal) {
+    const Answer answer =
+        run("export ggx:alpha=.2,F0=.9/.6/.3 --target usd --extensions none --name m --json -o " +
+            path("out"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    const Json file = Json::parse(answer.out)["files"][1];
+    const std::string layer = read(path("out/m.usda"));
+    EXPECT_EQ(inputOf(layer, "metallic"), "1");
+    EXPECT_NEAR(std::stod(inputOf(layer, "roughness")), std::sqrt(.2), 1e-3);
+    EXPECT_LT(file["loss"]["picture"]["flip"]["mean"], 0.01) << file;
+    EXPECT_NE(layer.find("FLIP"), std::string::npos);
+    EXPECT_TRUE(isPng(read(path("out/m_usd.png")), 480, 320));
+}
+
 TEST_F(Cli, MeshIsTheUsers) {
     write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n");
     const Answer answer = run("export gltf-pbr --target gltf --name t --mesh " + path("t.obj") +
@@ -235,6 +306,8 @@ TEST_F(Cli, MaterialsRefuseWhatTheyCannotTake) {
     expectError("export x.json --target bin --mesh y.obj" + out, 2, "--mesh", 2);
     expectError("export lambert --target gltf --extensions coat" + out, 2, "clearcoat", 2);
     expectError("fit lambert --model ggx --extensions auto", 2, "--extensions", 2);
+    expectError("export lambert --target usd --name a@b" + out, 2, "without '@'", 2);
+    expectError("export lambert --target usd --extensions ior" + out, 2, "auto, none or all", 2);
 }
 
 TEST_F(Cli, MaterialsAreReplacedByForceAlone) {

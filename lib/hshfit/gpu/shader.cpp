@@ -5,6 +5,7 @@
 #include <hshfit/files/template_text.h>
 #include <hshfit/gpu/shader_data.h>
 #include <hshfit/gpu/shader_text.h>
+#include <hshfit/gpu/slang.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -30,6 +31,8 @@ constexpr std::array table{
     LanguageEntry{Language::glslEs, "glsl-es", "glsl", "GLSL ES 3.00: WebGL2, OpenGL ES 3"},
     LanguageEntry{Language::glsl, "glsl", "glsl", "GLSL 4.50: OpenGL, Vulkan"},
     LanguageEntry{Language::hlsl, "hlsl", "hlsl", "HLSL, shader model 5 and 6: Direct3D, Vulkan"},
+    LanguageEntry{Language::slang, "slang", "slang",
+                  "Slang: modules for Falcor and neural shading"},
     LanguageEntry{Language::wgsl, "wgsl", "wgsl", "WGSL: WebGPU"},
     LanguageEntry{Language::metal, "metal", "metal", "Metal Shading Language 2"},
     LanguageEntry{Language::osl, "osl", "osl", "Open Shading Language 1.10; experimental"},
@@ -76,6 +79,7 @@ Words wordsOf(Language language, const std::string& prefix) {
             glsl.text = embedded::shader_glsl;
             return glsl;
         case Language::hlsl:
+        case Language::slang:
             hlsl.text = embedded::shader_hlsl;
             return hlsl;
         case Language::metal:
@@ -245,6 +249,10 @@ std::string rendered(std::string_view text, const data& page) {
 
 std::span<const LanguageEntry> languages() {
     return table;
+}
+
+std::string fileText(Language language, const std::string& snippets, std::string_view stem) {
+    return language == Language::slang ? slangModule(snippets, stem) : snippets;
 }
 
 std::string shaderFileName(const std::string& name, const LanguageEntry& language,

@@ -8,13 +8,14 @@
 
 namespace hshfit::gpu {
 
-/// The languages that shaders are written in.
-enum class Language { glslEs, glsl, hlsl, wgsl, metal, osl };
+/// The languages that shaders are written in. Snippets of Slang are in HLSL; `fileText` makes the
+/// module of them.
+enum class Language { glslEs, glsl, hlsl, slang, wgsl, metal, osl };
 
 /// A row of the language table.
 struct LanguageEntry {
     Language language;
-    std::string_view name;       ///< "glsl-es", "glsl", "hlsl", "wgsl", "metal", "osl"
+    std::string_view name;       ///< "glsl-es", "glsl", "hlsl", "slang", "wgsl", …
     std::string_view extension;  ///< of the file: "glsl", …
     std::string_view summary;
 };
@@ -42,5 +43,9 @@ struct ShaderOptions {
 /// Directions below the horizon give 0. Throws UsageError for a payload that the language cannot
 /// take, with the reason.
 std::string shaderSource(Language language, const Payload& payload, const ShaderOptions& options);
+
+/// The text of a file with one snippet or several; `stem` is the file's name without its extension,
+/// by which a Slang module is called (slang.h). Other languages are left as they are.
+std::string fileText(Language language, const std::string& snippets, std::string_view stem);
 
 }  // namespace hshfit::gpu

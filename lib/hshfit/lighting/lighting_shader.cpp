@@ -28,7 +28,13 @@ using gpu::Language;
 using kainjow::mustache::data;
 using kainjow::mustache::partial;
 
-constexpr std::array languages{Language::glslEs, Language::glsl, Language::hlsl, Language::wgsl};
+constexpr std::array languages{Language::glslEs, Language::glsl, Language::hlsl, Language::slang,
+                               Language::wgsl};
+
+/// Snippets of Slang are in HLSL too.
+bool isHlsl(Language language) {
+    return language == Language::hlsl || language == Language::slang;
+}
 
 /// A model's function, in the order of Kind, the section of the templates that has it, and its line
 /// of comment.
@@ -49,7 +55,7 @@ const FunctionRow& functionOf(const LightingShader& shader) {
 /// Declarations, whose order of type and name differs between the languages.
 void setDeclarations(Language language, const LightingShader& shader, data& page) {
     const bool wgsl = language == Language::wgsl;
-    const bool hlsl = language == Language::hlsl;
+    const bool hlsl = isHlsl(language);
     const std::string three = wgsl ? "vec3<f32>" : hlsl ? "float3" : "vec3";
     const std::string four = wgsl ? "vec4<f32>" : hlsl ? "float4" : "vec4";
     page.set("type", wgsl ? "fn" : "float");
@@ -177,7 +183,7 @@ std::span<const Language> lightingLanguages() {
 std::string lightingShaderSource(Language language, const LightingShader& shader) {
     gpu::checkPrefix(shader.prefix);
     if (!std::ranges::count(languages, language))
-        throw UsageError("shaders of lighting are in GLSL ES, GLSL, HLSL and WGSL only");
+        throw UsageError("shaders of lighting are in GLSL ES, GLSL, HLSL, Slang and WGSL only");
     const std::string name = shader.prefix + "_" + functionOf(shader).name;
     std::string upper = name;
     for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
@@ -191,7 +197,7 @@ std::string lightingShaderSource(Language language, const LightingShader& shader
     page.set("cube", wgsl ? name + "_lookUp" : upper + "_CUBE");
     page.set("glslEs", language == Language::glslEs);
     page.set("glsl", language == Language::glsl);
-    page.set("hlsl", language == Language::hlsl);
+    page.set("hlsl", isHlsl(language));
     page.set("wgsl", wgsl);
     for (const FunctionRow& row : functions) page.set(row.name, &row == &functionOf(shader));
     const bool prefiltered = shader.kind == LightingShader::Kind::prefiltered;

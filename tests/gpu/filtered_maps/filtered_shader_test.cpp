@@ -219,6 +219,9 @@ TEST(FilteredShader, GlslOnVulkan) {
 TEST(FilteredShader, HlslOnVulkan) {
     prove(Language::hlsl);
 }
+TEST(FilteredShader, SlangOnVulkan) {
+    prove(Language::slang);
+}
 TEST(FilteredShader, WgslOnVulkan) {
     prove(Language::wgsl);
 }

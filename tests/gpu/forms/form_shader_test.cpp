@@ -109,6 +109,9 @@ TEST(BasisShader, GlslOnVulkan) {
 TEST(BasisShader, HlslOnVulkan) {
     prove(Language::hlsl, samples::basisSamples());
 }
+TEST(BasisShader, SlangOnVulkan) {
+    prove(Language::slang, samples::basisSamples());
+}
 TEST(BasisShader, WgslOnVulkan) {
     prove(Language::wgsl, samples::basisSamples());
 }
@@ -127,6 +130,9 @@ TEST(FactoredShader, GlslOnVulkan) {
 }
 TEST(FactoredShader, HlslOnVulkan) {
     prove(Language::hlsl, samples::factoredSamples());
+}
+TEST(FactoredShader, SlangOnVulkan) {
+    prove(Language::slang, samples::factoredSamples());
 }
 TEST(FactoredShader, WgslOnVulkan) {
     prove(Language::wgsl, samples::factoredSamples());
@@ -180,6 +186,9 @@ TEST_F(HalfwayShader, GlslOnVulkan) {
 }
 TEST_F(HalfwayShader, HlslOnVulkan) {
     prove(Language::hlsl, samples);
+}
+TEST_F(HalfwayShader, SlangOnVulkan) {
+    prove(Language::slang, samples);
 }
 TEST_F(HalfwayShader, WgslOnVulkan) {
     prove(Language::wgsl, samples);

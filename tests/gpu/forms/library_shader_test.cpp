@@ -63,6 +63,7 @@ gpu::SharedSums sums() {
 std::string evaluationOf(Language language, std::size_t material) {
     switch (language) {
         case Language::hlsl:
+        case Language::slang:
             return fmt::format(
                 "\nfloat3 hsh_eval(float3 wo, float3 wi) {{ return hsh_material({}, wo, wi); }}\n",
                 material);
@@ -123,6 +124,9 @@ TEST(LibraryShader, GlslOnVulkan) {
 }
 TEST(LibraryShader, HlslOnVulkan) {
     prove(Language::hlsl);
+}
+TEST(LibraryShader, SlangOnVulkan) {
+    prove(Language::slang);
 }
 TEST(LibraryShader, WgslOnVulkan) {
     prove(Language::wgsl);

@@ -189,6 +189,9 @@ TEST(MapShader, GlslOnVulkan) {
 TEST(MapShader, HlslOnVulkan) {
     prove(Language::hlsl);
 }
+TEST(MapShader, SlangOnVulkan) {
+    prove(Language::slang);
+}
 TEST(MapShader, WgslOnVulkan) {
     prove(Language::wgsl);
 }

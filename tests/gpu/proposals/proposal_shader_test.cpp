@@ -187,6 +187,9 @@ TEST(ProposalShader, GlslOnVulkan) {
 TEST(ProposalShader, HlslOnVulkan) {
     prove(Language::hlsl);
 }
+TEST(ProposalShader, SlangOnVulkan) {
+    prove(Language::slang);
+}
 TEST(ProposalShader, WgslOnVulkan) {
     prove(Language::wgsl);
 }

@@ -1,5 +1,7 @@
 #include "sample_cases.h"
 
+#include "../shaders/slang_rules.h"
+
 #include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/gpu/forms/form_shader.h>
 #include <hshfit/representation/forms/form.h>
@@ -69,6 +71,7 @@ Words wordsOf(gpu::Language language) {
         case gpu::Language::glsl:
             return {"glsl", "float", "vec3"};
         case gpu::Language::hlsl:
+        case gpu::Language::slang:
             return {"hlsl", "float", "float3"};
         case gpu::Language::wgsl:
             return {"wgsl", "f32", "vec3<f32>"};
@@ -124,7 +127,7 @@ std::string sampleProgram(gpu::Language language, const ShaderJob& job,
     const bool grey = job.payload.head.channels.kind == Channels::Kind::grey;
     const Words words = wordsOf(language);
     kainjow::mustache::data page;
-    page.set("snippet", snippet);
+    page.set("snippet", language == gpu::Language::slang ? moduleAsHlsl(snippet) : snippet);
     page.set("type", grey ? words.real : words.vector);
     page.set("of", grey ? "" : "[i]");
     page.set("sampled", job.form.empty());

@@ -62,6 +62,10 @@ std::string withFault(std::string snippet, const std::string& right, const std::
 
 /// SPIR-V by glslangValidator (GLSL, HLSL) or naga (WGSL), checked by spirv-val. Throws Refused.
 std::vector<std::uint32_t> toSpirv(gpu::Language language, const std::string& source);
+/// spirv-val for Vulkan 1.1. Throws Refused.
+void validateSpirv(const std::vector<std::uint32_t>& words);
+/// The text of spirv-dis.
+std::string disassembled(const std::vector<std::uint32_t>& words);
 /// glslangValidator on a fragment shader. Throws Refused.
 void validateFragment(const std::string& source);
 

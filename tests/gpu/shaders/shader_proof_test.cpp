@@ -60,6 +60,9 @@ TEST(ShaderProof, GlslOnVulkan) {
 TEST(ShaderProof, HlslOnVulkan) {
     prove(Language::hlsl);
 }
+TEST(ShaderProof, SlangOnVulkan) {
+    prove(Language::slang);
+}
 TEST(ShaderProof, WgslOnVulkan) {
     prove(Language::wgsl);
 }

@@ -48,8 +48,8 @@ TEST(ShaderText, LanguagesAreListedOnce) {
         languages.insert(entry.language);
         EXPECT_FALSE(entry.summary.empty() || entry.extension.empty());
     }
-    EXPECT_EQ(names,
-              (std::set<std::string_view>{"glsl", "glsl-es", "hlsl", "metal", "osl", "wgsl"}));
+    EXPECT_EQ(names, (std::set<std::string_view>{"glsl", "glsl-es", "hlsl", "metal", "osl", "slang",
+                                                 "wgsl"}));
     EXPECT_EQ(languages.size(), gpu::languages().size());
 }
 

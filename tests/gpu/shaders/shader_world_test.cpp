@@ -63,6 +63,9 @@ TEST(ShaderWorld, GlslOnVulkan) {
 TEST(ShaderWorld, HlslOnVulkan) {
     prove(gpu::Language::hlsl);
 }
+TEST(ShaderWorld, SlangOnVulkan) {
+    prove(gpu::Language::slang);
+}
 TEST(ShaderWorld, WgslOnVulkan) {
     prove(gpu::Language::wgsl);
 }

@@ -1,4 +1,5 @@
 #include "runners.h"
+#include "slang_rules.h"
 
 #include <fmt/format.h>
 #include <kainjow/mustache.hpp>
@@ -105,6 +106,7 @@ const char* wrapperOf(gpu::Language language) {
         case gpu::Language::glsl:
             return "glsl.mustache";
         case gpu::Language::hlsl:
+        case gpu::Language::slang:
             return "hlsl.mustache";
         case gpu::Language::wgsl:
             return "wgsl.mustache";
@@ -125,6 +127,7 @@ Types typesOf(gpu::Language language) {
         case gpu::Language::glsl:
             return {"float", "vec3"};
         case gpu::Language::hlsl:
+        case gpu::Language::slang:
         case gpu::Language::metal:
             return {"float", "float3"};
         case gpu::Language::wgsl:
@@ -168,7 +171,8 @@ std::string wrapped(gpu::Language language, const ShaderJob& job, const std::str
     const bool spectral = job.payload.head.channels.kind == Channels::Kind::spectral;
     const Types types = typesOf(language);
     data page;
-    page.set("snippet", withFreeBinding(snippet));
+    const bool slang = language == gpu::Language::slang;
+    page.set("snippet", slang ? moduleAsHlsl(snippet) : withFreeBinding(snippet));
     page.set("type", spectral ? "hsh_Values" : grey ? types.real : types.vector);
     page.set("lightElement", spectral ? "hsh_Values" : types.vector);
     page.set("spectral", spectral);
@@ -250,13 +254,33 @@ std::vector<std::uint32_t> toSpirv(gpu::Language language, const std::string& so
         need("glslangValidator", "glslang-tools");
         accept(
             fmt::format("glslangValidator {} --target-env vulkan1.1 -S comp -e main '{}' -o '{}'",
-                        language == gpu::Language::hlsl ? "-D -V" : "-V", in, out));
+                        language == gpu::Language::glsl ? "-V" : "-D -V", in, out));
     }
     accept(fmt::format("spirv-val --target-env vulkan1.1 '{}'", out));
     const std::string bytes = textOf(out);
     std::vector<std::uint32_t> words(bytes.size() / 4);
     std::copy_n(bytes.data(), words.size() * 4, reinterpret_cast<char*>(words.data()));
     return words;
+}
+
+void validateSpirv(const std::vector<std::uint32_t>& words) {
+    need("spirv-val", "spirv-tools");
+    const Folder folder;
+    std::string bytes;
+    append(bytes, words.data(), words.size());
+    save(folder.file("shader.spv"), bytes);
+    accept(fmt::format("spirv-val --target-env vulkan1.1 '{}'", folder.file("shader.spv")));
+}
+
+std::string disassembled(const std::vector<std::uint32_t>& words) {
+    need("spirv-dis", "spirv-tools");
+    const Folder folder;
+    std::string bytes;
+    append(bytes, words.data(), words.size());
+    save(folder.file("shader.spv"), bytes);
+    const Outcome outcome = command(fmt::format("spirv-dis '{}'", folder.file("shader.spv")));
+    if (outcome.status != 0) throw Refused(outcome.text);
+    return outcome.text;
 }
 
 void validateFragment(const std::string& source) {

@@ -3,6 +3,7 @@
 #include <hshfit/materials/glb.h>
 #include <hshfit/materials/materialx.h>
 #include <hshfit/materials/surface.h>
+#include <hshfit/materials/usd.h>
 
 #include <gtest/gtest.h>
 
@@ -116,6 +117,25 @@ TEST(Materials, MaterialXNamesAreValid) {
     EXPECT_THROW(
         materialXText("m", "gltf_pbr", {{"x", {std::numeric_limits<double>::infinity()}}}, ""),
         NumericError);
+}
+
+/// A string of a layer ends at the first quote that no backslash precedes (OpenUSD's text format).
+TEST(Materials, UsdKeepsTextsAndRefusesWhatALayerCannotHold) {
+    const Surface sphere = sphereSurface(4);
+    const std::string layer = usdText("3m", "3m.mtlx", {}, sphere, "a \"b\" \\ c\nd");
+    EXPECT_NE(layer.find(R"(doc = "a \"b\" \\ c d")"), std::string::npos);
+    EXPECT_NE(layer.find("@./3m.mtlx@</MaterialX/Materials/M_3m>"), std::string::npos);
+    EXPECT_NE(layer.find("outputs:surface.connect = </M_3m/Material/PreviewSurface.outputs"),
+              std::string::npos);
+    for (const char* path : {"a@b.mtlx", "a\nb.mtlx", ""})
+        EXPECT_THROW(usdText("m", path, {}, sphere, ""), UsageError) << path;
+    EXPECT_THROW(usdText("m", "m.mtlx", {}, {}, ""), UsageError);
+    UsdPreviewSurface material;
+    material.roughness = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THROW(usdText("m", "m.mtlx", material, sphere, ""), NumericError);
+    Surface broken = sphere;
+    broken.positions[3][1] = std::numeric_limits<float>::infinity();
+    EXPECT_THROW(usdText("m", "m.mtlx", {}, broken, ""), NumericError);
 }
 
 }  // namespace

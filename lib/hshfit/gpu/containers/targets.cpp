@@ -27,7 +27,7 @@ const Renderer renderers[] = {
     {"godot3", "Godot 3: a shader", {"glsl-es"}, true},
     {"unity", "Unity: a shader, a function for graphs, data", {"bin", "hlsl"}, true},
     {"unreal", "Unreal: the file of a Custom node, a strip", {"exr", "hlsl"}, true},
-    {"falcor", "Falcor: a texture array, a Slang snippet", {"dds", "hlsl"}},
+    {"falcor", "Falcor: a texture array, a Slang module", {"dds", "slang"}},
     {"blender",
      "Blender: a strip for image nodes, parts for an OSL script",
      {"exr", "exr-parts", "osl"}},
@@ -46,6 +46,10 @@ std::vector<Target> makeTargets() {
         rows.push_back(
             {Target::Kind::shader, std::string(language.name), std::string(language.summary), {}});
     }
+    rows.push_back({Target::Kind::binary,
+                    "spirv",
+                    "a SPIR-V module for Vulkan: a compute shader that evaluates pairs",
+                    {}});
     rows.push_back({Target::Kind::viewer,
                     "viewer",
                     "a page that shows the material: exact, HSH, SH and their difference",
@@ -66,6 +70,10 @@ std::vector<Target> makeTargets() {
                     "materialx",
                     "a .mtlx: open_pbr_surface or gltf_pbr of MaterialX 1.39, fitted",
                     {}});
+    rows.push_back({Target::Kind::material,
+                    "usd",
+                    "a .usda of OpenUSD: UsdPreviewSurface, fitted, and the .mtlx by reference",
+                    {"materialx"}});
     return rows;
 }
 
@@ -80,8 +88,8 @@ const Target& find(std::string_view name) {
 }  // namespace
 
 std::string_view kindName(Target::Kind kind) {
-    constexpr std::array<std::string_view, 6> names = {"container", "shader",   "viewer",
-                                                       "renderer",  "material", "module"};
+    constexpr std::array<std::string_view, 7> names = {"container", "shader", "viewer", "renderer",
+                                                       "material",  "module", "binary"};
     return names[static_cast<std::size_t>(kind)];
 }
 

@@ -6,20 +6,20 @@
 
 namespace hshfit::gpu::inline containers {
 
-/// A choice of an export: a container, a shader language, the viewer, the set of them that suits
-/// one renderer, a standard material, which has parameters in place of coefficients, or a module
-/// with a material.
+/// A choice of an export: a container, a shader language, a compiled shader, the viewer, the set of
+/// them that suits one renderer, a standard material, which has parameters in place of
+/// coefficients, or a module with a material.
 struct Target {
-    enum class Kind { container, shader, viewer, renderer, material, module };
+    enum class Kind { container, shader, viewer, renderer, material, module, binary };
 
     Kind kind = Kind::container;
     std::string name, summary;
-    std::vector<std::string> parts;  ///< of a renderer or a module: names of the other kinds
+    std::vector<std::string> parts;  ///< written with it: names of other targets
 };
 std::string_view kindName(Target::Kind kind);  ///< "container", …
 
-/// The containers, the languages, the viewer, the modules, the renderers and the materials, in this
-/// order.
+/// The containers, the languages, compiled shaders, the viewer, the modules, the renderers and the
+/// materials, in this order.
 const std::vector<Target>& targets();
 
 /// Containers, languages, modules and the viewer named in a comma-separated list, renderers

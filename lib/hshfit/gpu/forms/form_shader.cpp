@@ -42,6 +42,7 @@ FormLanguage formLanguage(Language language) {
         case Language::glsl:
             return {embedded::form_glsl, "int", "int", "vec3", "uvec3"};
         case Language::hlsl:
+        case Language::slang:
             return {embedded::form_hlsl, "int", "int", "float3", "uint3"};
         case Language::metal:
             return {embedded::form_metal, "int", "int", "float3", "uint3"};

@@ -34,6 +34,7 @@ ProposalLanguage proposalLanguage(Language language) {
         case Language::glsl:
             return {embedded::proposal_glsl, "int", "int"};
         case Language::hlsl:
+        case Language::slang:
             return {embedded::proposal_hlsl, "int", "int"};
         case Language::metal:
             return {embedded::proposal_metal, "int", "int"};

@@ -41,6 +41,10 @@ std::vector<float> ComputeProgram::read(std::uint32_t) const {
     refuse();
 }
 
+bool compilesGlsl() {
+    return false;
+}
+
 std::vector<std::uint32_t> compileGlsl(const std::string&) {
     refuse();
 }

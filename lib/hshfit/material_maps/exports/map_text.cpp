@@ -28,6 +28,7 @@ std::string_view textOf(Language language) {
         case Language::glsl:
             return embedded::map_glsl;
         case Language::hlsl:
+        case Language::slang:
             return embedded::map_hlsl;
         case Language::wgsl:
             return embedded::map_wgsl;
@@ -141,6 +142,7 @@ std::string texelFetchText(Language language, const std::string& prefix, const s
             return fmt::format("texelFetch({}_map, ivec3(int(px), int(py), {}), int(level))",
                                prefix, layer);
         case Language::hlsl:
+        case Language::slang:
             return fmt::format("{}_map.Load(int4(int(px), int(py), {}, int(level)))", prefix,
                                layer);
         case Language::wgsl:
