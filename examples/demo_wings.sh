@@ -45,5 +45,15 @@ holds "no item failed, and none is missing" \
     "$(number '@ failed') == 0 && $(number '@ missing') == 0"
 
 echo
+echo "13. A library: glossy and matte materials in one basis, and one shader for all of them."
+show library learn ggx:alpha=.2,F0=.9/.6/.3 ggx:alpha=.3,F0=.8/.7/.6 ggx:alpha=.4,F0=.04 \
+    lambert:kd=.3/.2/.1+ggx:alpha=.35,F0=.04 lambert:kd=.1/.5/.3+ggx:alpha=.25,F0=.05 \
+    oren-nayar:sigma=.5,kd=.6/.3/.3 lambert:kd=.5/.5/.1 --components 6 --limit 10 \
+    --limit-maximum 10 --limit-flip 1 -o out/studio.library --force
+show library export out/studio.library --target glsl,bin -o out/studio --force
+holds "every material has its texels" \
+    "$(number '@ materials over') == 7 && $(number 'functions, @ bytes') >= 56"
+
+echo
 echo "The plan is out/plan/plan.html; the table of the batch is out/batch/index.html;"
 echo "the pictures are out/box, out/box_cache and out/ball."
