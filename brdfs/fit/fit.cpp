@@ -99,7 +99,7 @@ void describe(const FitProblem& problem, const std::vector<double>& x, const Fit
         if (i < shapes) {
             const ShapeParameter& shape = sum.shapes()[i];
             parameter.name = shape.name;
-            parameter.value = shape.toValue(at);
+            parameter.value = shape.free.reduced(shape.toValue(at));
             slope.push_back(shape.slope(parameter.value));
             part.shapes.push_back(parameter.value);
         } else {

@@ -39,6 +39,13 @@ bool isIndex(const Model& model, const Parameter& parameter) {
     return !model.parts.empty() && parameter.min == 1;
 }
 
+/// Angles that turn a lobe are free within two whole turns, and start within the half turn after
+/// which the lobe is the same.
+double periodOf(const Parameter& parameter, const FitRange& range) {
+    const bool turns = range.low == 0 && range.high == pi && parameter.min == -2 * pi;
+    return turns ? pi : 0;
+}
+
 }  // namespace
 
 std::vector<FreeParameter> freeParameters(const Model& model, const Parameters& stated,
@@ -67,7 +74,8 @@ std::vector<FreeParameter> freeParameters(const Model& model, const Parameters& 
                         .startLow = range->low,
                         .startHigh = range->high,
                         .colour = parameter.kind == Parameter::Kind::colour,
-                        .linear = parameter.linear && parameter.linear(values)});
+                        .linear = parameter.linear && parameter.linear(values),
+                        .period = periodOf(parameter, *range)});
     }
     return free;
 }

@@ -2,6 +2,7 @@
 
 #include <brdfs/catalog/tables.h>
 
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,12 @@ struct FreeParameter {
     double startLow = 0, startHigh = 0;
     bool colour = false;  ///< may have a value per channel
     bool linear = false;  ///< f is linear in it (Parameter::linear)
+    double period = 0;    ///< values that differ by it have the same f; 0: none do
+
+    /// The value of the same f in [0, period).
+    double reduced(double value) const {
+        return period > 0 ? value - period * std::floor(value / period) : value;
+    }
 };
 
 /// The parameters of `model` that are free to fit, given those that are stated: the ones whose row

@@ -208,7 +208,7 @@ protected:
     /// Models whose masking or albedo is an integral, or whose value is a sum of dozens of terms.
     static bool isSlow() {
         const std::string_view name = GetParam().model->name;
-        return name == "he" || name == "openpbr" || name == "gtr";
+        return name == "he" || name == "gtr";
     }
     static std::size_t sizeOf() {
         return std::getenv("HSHFIT_DRAWS") ? 1500 : isSlow() ? 200 : 500;

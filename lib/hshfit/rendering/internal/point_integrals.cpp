@@ -155,6 +155,9 @@ void PointIntegrals::interpolate(double tolerance, Steps& steps, const GoesOn& g
             }
             std::array<double, valuesOfPoint> values;
             table.interpolate(points_.normals[k], values);
+            // Polynomials swing below 0 beside a highlight, by less than they are off.
+            for (double& value : values)
+                if (value < 0 && value >= -gap) value = 0;
             facts_[k] = {.radiance = {values[0], values[1], values[2]},
                          .error = std::abs(values[3]) + gap};
             keep(k, tolerance);
