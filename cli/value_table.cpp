@@ -86,6 +86,7 @@ constexpr ValueRow valueRows[] = {
     {"library", "--library", {nullptr, Syntax::word, Files::read, ""}},
     {"library", "--output", {nullptr, Syntax::word, Files::written, ".library"}},
     {"library", "--sigma", jobs::sigmaValues},
+    {"library", "--target", {jobs::targetWords, Syntax::list}},
     {"library", "INPUT", {nullptr, Syntax::brdf, Files::read, ""}},
     {"light", "SPEC", {nullptr, Syntax::light, Files::read, ""}},
     {"list", "TEXT", {presetWords}},
