@@ -306,7 +306,7 @@ void runExport(const LibraryArguments& arguments, const Globals& globals) {
     jobs::LibraryExportOptions options = arguments.exporting;
     options.force = globals.force;
     const jobs::ExportedLibrary exported =
-        jobs::exportLibrary(arguments.inputs[0], arguments.output, options, listenerFor(globals));
+        jobs::exportLibrary(arguments.inputs[0], arguments.output, options);
     std::vector<std::string> files;
     for (const gpu::ExportedFile& file : exported.textures) files.push_back(file.path);
     files.insert(files.end(), exported.shaders.begin(), exported.shaders.end());

@@ -19,20 +19,8 @@ import sys
 import tempfile
 
 import form_shaders
+from form_shaders import EVAL, OF_FORM, OF_LIBRARY, row
 
-MAIN = """#version 450
-%s
-layout(local_size_x = 64) in;
-layout(std430, binding = 3) readonly buffer Input { vec4 inputs[]; };
-layout(std430, binding = 4) writeonly buffer Output { vec4 outputs[]; };
-void main() {
-    int k = int(gl_GlobalInvocationID.x);
-    vec3 wo = inputs[2 * k].xyz, wi = inputs[2 * k + 1].xyz;
-    int material = int(inputs[2 * k].w);
-    %s
-}
-"""
-EVAL = "outputs[k] = vec4(%s, 0.0);"
 GGX = """
 vec3 hsh_eval(vec3 wo, vec3 wi) {
     vec3 h = normalize(wo + wi);
@@ -59,10 +47,6 @@ LIGHTING = (("prefiltered", "hsh_prefiltered(wi, wo)", ""),
             ("ltc", "hsh_ltc(wi, wo, light[0], light[1], light[2], light[3])", "vec3 light[4];"))
 
 
-def row(cells):
-    return "| " + " | ".join(str(cell) for cell in cells) + " |"
-
-
 def run(program, *arguments):
     return subprocess.run([program, *arguments], check=True, capture_output=True, text=True).stdout
 
@@ -79,12 +63,7 @@ class Shaders:
         self.folder, self.names = folder, []
 
     def add(self, name, snippet, body):
-        path = "%s/%d" % (self.folder, len(self.names))
-        with open(path + ".comp", "w", encoding="ascii") as file:
-            file.write(MAIN % (snippet, body))
-        run("glslangValidator", "-V", "--target-env", "vulkan1.1", path + ".comp", "-o",
-            path + ".spv")
-        run("spirv-opt", "-O", path + ".spv", "-o", path + ".spv")
+        form_shaders.compiled(snippet, body, self.folder, str(len(self.names)))
         self.names.append(name)
 
     def table(self, build):
@@ -106,9 +85,9 @@ def main(build, data):
     program = build + "/hshfit"
     with tempfile.TemporaryDirectory() as folder:
         shaders = Shaders(folder)
-        shaders.add("nothing", form_shaders.COPY, EVAL % "hsh_eval(wo, wi)")
-        shaders.add("GGX + Lambert", GGX, EVAL % "hsh_eval(wo, wi)")
-        shaders.add("network, 675 weights", form_shaders.network(), EVAL % "hsh_eval(wo, wi)")
+        shaders.add("nothing", form_shaders.COPY, OF_FORM)
+        shaders.add("GGX + Lambert", GGX, OF_FORM)
+        shaders.add("network, 675 weights", form_shaders.network(), OF_FORM)
         if not data:
             return shaders.table(build)
         satin = data + "/rgl/satin_rosaline_rgb.bsdf"
@@ -123,7 +102,7 @@ def main(build, data):
                 run(program, "export", path, "-o", folder, "--name", "x", "--force", "--quiet",
                     "--target", "bin,glsl", "--no-error", "--no-sampling", *where)
                 shaders.add("`%s`, %s" % (words, storage), text(folder + "/x_hsh.glsl"),
-                            EVAL % "hsh_eval(wo, wi)")
+                            OF_FORM)
             if "8,4,3" in words:
                 run(program, "export", path, "-o", folder, "--name", "lit", "--force", "--quiet",
                     "--target", "glsl", "--no-error", "--lighting",
@@ -139,7 +118,7 @@ def main(build, data):
                                     "glsl", "--force", "--json"))
             shaders.add("library, %d components" % count,
                         text("%s/%s" % (folder, answer["files"][0])),
-                        EVAL % "hsh_material(material, wo, wi)")
+                        OF_LIBRARY)
         for name, call, light in LIGHTING:
             fill = "for (int i = 0; i < light.length(); ++i) light[i] = inputs[2 * k + i].xyz;"
             shaders.add("lighting `%s`" % name, text("%s/lit_hsh_%s.glsl" % (folder, name)),

@@ -28,9 +28,6 @@ COLUMNS = ("file", "bytes", "mean log, file", "change by export", "instructions,
            "texture", "ns a pair, constants", "network's over it")
 REPEATS = 41
 COPY = "vec3 hsh_eval(vec3 wo, vec3 wi) { return wo + wi; }"
-LIBRARY = """
-vec3 hsh_eval(vec3 wo, vec3 wi) { return hsh_material(int(gl_WorkGroupID.x), wo, wi); }
-"""
 MAIN = """#version 450
 %s
 layout(local_size_x = 64) in;
@@ -38,23 +35,33 @@ layout(std430, binding = 3) readonly buffer Input { vec4 inputs[]; };
 layout(std430, binding = 4) writeonly buffer Output { vec4 outputs[]; };
 void main() {
     int k = int(gl_GlobalInvocationID.x);
-    outputs[k] = vec4(hsh_eval(inputs[2 * k].xyz, inputs[2 * k + 1].xyz), 0.0);
+    vec3 wo = inputs[2 * k].xyz, wi = inputs[2 * k + 1].xyz;
+    int material = int(inputs[2 * k].w);
+    %s
 }
 """
+EVAL = "outputs[k] = vec4(%s, 0.0);"
+OF_FORM, OF_LIBRARY = EVAL % "hsh_eval(wo, wi)", EVAL % "hsh_material(material, wo, wi)"
 
 
 def row(cells):
     return "| " + " | ".join(cells) + " |"
 
 
-def instructions(snippet, folder, name="s"):
-    """Instructions within functions, after optimisation for speed; leaves NAME.spv."""
+def compiled(snippet, body, folder, name):
+    """NAME.spv, after optimisation for speed, of a snippet and the work of a pair."""
     source, code = "%s/%s.comp" % (folder, name), "%s/%s.spv" % (folder, name)
     with open(source, "w", encoding="ascii") as file:
-        file.write(MAIN % snippet)
+        file.write(MAIN % (snippet, body))
     subprocess.run(["glslangValidator", "-V", "--target-env", "vulkan1.1", source, "-o", code],
                    check=True, stdout=subprocess.DEVNULL)
     subprocess.run(["spirv-opt", "-O", code, "-o", code], check=True)
+    return code
+
+
+def instructions(snippet, folder, name="s", body=OF_FORM):
+    """Instructions within functions; leaves NAME.spv."""
+    code = compiled(snippet, body, folder, name)
     text = subprocess.run(["spirv-dis", "--no-color", code], check=True, capture_output=True,
                           text=True).stdout
     inside, count = False, 0
@@ -143,7 +150,7 @@ def libraries(build, paths):
                 [build + "/hshfit", "library", "export", path, "-o", folder, "--target", "glsl",
                  "--force", "--json"], check=True, capture_output=True, text=True).stdout)
             with open("%s/%s" % (folder, answer["files"][0]), encoding="ascii") as file:
-                count = instructions(file.read() + LIBRARY, folder)
+                count = instructions(file.read(), folder, body=OF_LIBRARY)
             print(row(("`%s`" % os.path.basename(path), str(answer["components"]),
                        str(answer["bytes"]), str(count))))
 

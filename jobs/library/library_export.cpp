@@ -122,7 +122,7 @@ std::vector<const gpu::Target*> targetsOf(const std::string& names) {
 }  // namespace
 
 ExportedLibrary exportLibrary(const std::string& path, const std::string& folder,
-                              const LibraryExportOptions& options, const Listener& listener) {
+                              const LibraryExportOptions& options) {
     const std::vector<const gpu::Target*> targets = targetsOf(options.targets);
     const ml::Library library = ml::readLibrary(path);
     ExportedLibrary exported;
@@ -136,16 +136,11 @@ ExportedLibrary exportLibrary(const std::string& path, const std::string& folder
     const gpu::Texels texels = gpu::materialTexels(sums);
     exported.bytes = sums.stride() * 4 * gpu::numberBytes(texels.number);
 
+    // All of them hold halves.
     std::vector<const gpu::Container*> containers;
-    for (const gpu::Target* target : targets) {
-        if (target->kind != gpu::Target::Kind::container) continue;
-        const gpu::Container& container = gpu::findContainer(target->name);
-        if (options.targets == "all" && !container.holds(texels.number))
-            listener.say(fmt::format("left out: {} cannot hold {}", container.name,
-                                     gpu::numberName(texels.number)));
-        else
-            containers.push_back(&container);
-    }
+    for (const gpu::Target* target : targets)
+        if (target->kind == gpu::Target::Kind::container)
+            containers.push_back(&gpu::findContainer(target->name));
     FileSet files(folder, options.force);
     const Json tests = testsOf(library, exported);
     exported.textures = gpu::writeTexels(

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <jobs/common/listener.h>
-
 #include <hshfit/gpu/containers/containers.h>
 #include <hshfit/material_library/library.h>
 
@@ -33,6 +31,6 @@ struct ExportedLibrary {
 /// NAME_test.json, NAME being the library's. Throws InputError for a library without a basis or
 /// without a material in it, UsageError for targets that a library has not, OutputError.
 ExportedLibrary exportLibrary(const std::string& path, const std::string& folder,
-                              const LibraryExportOptions& options, const Listener& listener = {});
+                              const LibraryExportOptions& options);
 
 }  // namespace hshfit::jobs

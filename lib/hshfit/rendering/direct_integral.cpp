@@ -212,9 +212,15 @@ constexpr int mostLevel = 12;
 /// Share of a picture's flux times width, in radians, of its coarse cells, over the tolerance.
 constexpr double finestPerTolerance = 0.1;
 
-/// The brightness about the sun falls to 1/e over a third of a radian in CIE's skies (d = -3), and
-/// no faster in Preetham's.
-constexpr double skyGradient = 0.3;
+/// DirectIntegral::finest of a light.
+double finestOf(const Light& light) {
+    const auto* sky = std::get_if<SkyLight>(&light);
+    if (!sky || sky->model == SkyLight::Model::hosekWilkie) return 0;
+    double finest = 1;
+    for (const SkyShape& shape : sky->shapes)
+        finest = std::min(finest, 1 / std::max(1.0, std::abs(shape.d)));
+    return finest;
+}
 
 /// The level at which nodes are as close as the narrowest lobe is wide.
 int firstLevel(double extent, std::span<const Peak> peaks) {
@@ -232,7 +238,7 @@ struct DirectIntegral::Parts {
     Parts(std::span<const Light> lights, double tolerance)
         : cells(withSkyPictures(lights), finestPerTolerance * tolerance) {
         for (const Light& light : lights) {
-            if (!std::holds_alternative<SkyLight>(light)) finest = 0;
+            finest = std::min(finest, finestOf(light));
             if (!std::holds_alternative<PictureLight>(light) &&
                 !std::holds_alternative<SkyLight>(light)) {
                 compact.push_back(light);
@@ -240,7 +246,7 @@ struct DirectIntegral::Parts {
         }
     }
     LightCells cells;
-    double finest = skyGradient;
+    double finest = 1;
     std::vector<Light> compact;  ///< discs, panels, directional lights, series
 };
 

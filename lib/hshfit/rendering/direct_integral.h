@@ -47,8 +47,8 @@ public:
     PointRadiance at(const Brdf& brdf, const Frame& frame, const Direction& wo,
                      const IntegrationOptions& options = {}) const;
 
-    /// Radians over which the light changes, at least, but for edges: those of skies' gradients;
-    /// 0 of all other lights.
+    /// The angle in radians over which the light, but for its edges, falls to 1/e at the most. It
+    /// is known of skies whose brightness about the sun is an exponential; 0 with any other light.
     double finest() const;
 
 private:

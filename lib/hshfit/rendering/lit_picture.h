@@ -36,9 +36,10 @@ struct LitPicture {
     double evaluations = 0;  ///< of f by integration, the mean over points
 };
 
-/// Radiance of a surface by direct integration (direct_integral.h) at every point. `brdf` is grey
-/// or RGB; a transmission is seen as a thin pane with the lights behind it. The picture does not
-/// depend on the number of threads.
+/// Radiance of a surface by direct integration (direct_integral.h) at every point; many points that
+/// see the viewer in one direction share integrals by their normals, within an eighth of the
+/// tolerance (internal/point_integrals.h). `brdf` is grey or RGB; a transmission is seen as a thin
+/// pane with the lights behind it. The picture does not depend on the number of threads.
 ///
 /// With an end of the time, `until`: a point of each pixel to an error of 50 % first, however long
 /// that takes; then every point, and then every point to the tolerance, until the time is over.

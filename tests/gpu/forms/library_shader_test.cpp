@@ -85,11 +85,31 @@ std::string evaluationOf(Language language, std::size_t material) {
     }
 }
 
+/// A unit vector whose components are floats.
+Direction rounded(const Direction& d) {
+    const double length = std::hypot(d.x, d.y, d.z);
+    const auto part = [&](double x) { return double{static_cast<float>(x / length)}; };
+    return {part(d.x), part(d.y), part(d.z)};
+}
+
+/// Those of all forms; of every four, one of mirror directions, one within a thousandth of a radian
+/// of these, and one with wi within a tenth of a degree of the horizon.
+Pairs pairsWithLobes() {
+    Pairs pairs = directionPairs();
+    for (std::size_t k = 0; k < pairs.wi.size(); ++k) {
+        const Direction &wo = pairs.wo[k], &wi = pairs.wi[k];
+        if (k % 4 == 1) pairs.wi[k] = {-wo.x, -wo.y, wo.z};
+        if (k % 4 == 2) pairs.wi[k] = rounded({-wo.x + 7e-4, -wo.y, wo.z});
+        if (k % 4 == 3) pairs.wi[k] = rounded({wi.x, wi.y, 1.5e-3 * std::hypot(wi.x, wi.y)});
+    }
+    return pairs;
+}
+
 void prove(Language language) {
     const gpu::SharedSums all = sums();
     ASSERT_EQ(all.count(), library().materials.size());
     ASSERT_GT(all.stride(), 7u);
-    ShaderJob job{{}, directionPairs(), {.order = 0, .colours = 0, .values = {}}};
+    ShaderJob job{{}, pairsWithLobes(), {.order = 0, .colours = 0, .values = {}}};
     job.payload.head.channels = Channels::rgb();
     job.payload.coefficients = gpu::materialTexels(all);
     job.form = "texture";

@@ -8,6 +8,8 @@
 // The first line has the device's name. Shaders may have sampled textures at bindings 0 and
 // 1 and storage buffers at 3 and 4. Exit code 77 where Mesa has no such driver.
 
+#include "spirv_words.h"
+
 #include <fmt/format.h>
 #include <vulkan/vulkan_raii.hpp>
 
@@ -27,16 +29,6 @@ namespace {
 constexpr int missing = 77;
 constexpr const char* driver = "/usr/share/vulkan/icd.d/radeon_icd.x86_64.json";
 constexpr std::array columns{"Instructions", "VGPRs", "Spilled VGPRs", "Inverse Throughput"};
-
-std::vector<std::uint32_t> wordsOf(const char* path) {
-    std::ifstream file(path, std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-    if (!file || bytes.empty() || bytes.size() % 4 != 0)
-        throw std::runtime_error(fmt::format("{}: is no SPIR-V", path));
-    std::vector<std::uint32_t> words(bytes.size() / 4);
-    std::copy_n(bytes.data(), bytes.size(), reinterpret_cast<char*>(words.data()));
-    return words;
-}
 
 class Compiler {
 public:
@@ -58,7 +50,7 @@ public:
     std::string device() const { return physical_.getProperties().deviceName.data(); }
 
     std::map<std::string, std::uint64_t> costs(const char* path) const {
-        const std::vector<std::uint32_t> words = wordsOf(path);
+        const std::vector<std::uint32_t> words = hshfit::shaders::wordsOf(path);
         const vk::raii::ShaderModule module(device_, vk::ShaderModuleCreateInfo({}, words));
         const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute,
                                                       *module, "main");

@@ -8,6 +8,7 @@
 // HSHFIT_TEST_GPU set, any other. The first line has its name.
 
 #include "runners.h"
+#include "spirv_words.h"
 
 #include <fmt/format.h>
 
@@ -26,16 +27,6 @@ namespace hshfit::shaders {
 namespace {
 
 constexpr std::uint32_t pairs = 1U << 20U, groupSize = 64;
-
-std::vector<std::uint32_t> wordsOf(const char* path) {
-    std::ifstream file(path, std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-    if (!file || bytes.empty() || bytes.size() % 4 != 0)
-        throw std::runtime_error(fmt::format("{}: is no SPIR-V", path));
-    std::vector<std::uint32_t> words(bytes.size() / 4);
-    std::copy_n(bytes.data(), bytes.size(), reinterpret_cast<char*>(words.data()));
-    return words;
-}
 
 std::vector<float> pairNumbers() {
     std::mt19937 random(1);
