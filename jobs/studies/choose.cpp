@@ -78,6 +78,7 @@ choice::Choice choose(const std::string& spec, const std::string& output,
                               .kinds = renderer.kinds,
                               .bytes = options.bytes,
                               .error = options.error,
+                              .cycles = options.cost,
                               .cpuSeconds = options.seconds,
                               .progress = listener.part("choose")};
     bool said = false;

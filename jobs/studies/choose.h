@@ -15,6 +15,7 @@ struct ChooseOptions {
     std::string renderer = "any";           ///< a row of choose_renderers.h
     std::vector<std::string> kinds = {};    ///< to try; empty: all
     std::optional<std::size_t> bytes = {};  ///< at most
+    std::optional<std::size_t> cost = {};   ///< cycles at most: choice::ChoiceOptions::cycles
     std::optional<double> error = {};       ///< mean FLIP at most; none: PoorBounds::flip
     double seconds = choice::ChoiceOptions{}.cpuSeconds;  ///< of the processor, of all candidates
 };

@@ -36,11 +36,12 @@ using Kind = Representation::Kind;
 /// A row of fits: sums from few lobes to many.
 struct LobeModel {
     const char *name, *model;
+    int lobes;  ///< of GGX
 };
 constexpr LobeModel lobeModels[] = {
-    {"Lambert", "lambert"},
-    {"Lambert + GGX", "lambert+ggx"},
-    {"Lambert + 2 GGX", "lambert+ggx+ggx"},
+    {"Lambert", "lambert", 0},
+    {"Lambert + GGX", "lambert+ggx", 1},
+    {"Lambert + 2 GGX", "lambert+ggx+ggx", 2},
 };
 
 /// A row of standard materials; `kind` is that of the candidates.
@@ -96,17 +97,18 @@ Made theModel(const CandidateSource& source) {
         }};
 }
 
-Made fittedLobes(const CandidateSource& source, const char* model) {
-    const FitOptions how{.model = model, .accept = true, .rgb = true, .advise = false};
+Made fittedLobes(const CandidateSource& source, const LobeModel& row) {
+    const FitOptions how{.model = row.model, .accept = true, .rgb = true, .advise = false};
     const Fitted fitted = fitBrdf(source.brdf, source.spec, how);
     const std::string file = source.name + ".json", text = presetText(fitted);
-    std::vector<Setting> settings{{"FitOptions::model", model}};
+    std::vector<Setting> settings{{"FitOptions::model", row.model}};
     if (!fitted.result.converged) settings.push_back({"FitOptions::accept"});
     return {.brdf = openBeside(fitted.result.spec, source.brdf),
             .spec = fitted.result.spec,
             .bytes = formulaBytes(fitted.result.spec),
             .commands = {command("fit", source.spec, settings, file)},
-            .write = [=](FileSet& files) { files.write(file, text); }};
+            .write = [=](FileSet& files) { files.write(file, text); },
+            .shader = [lobes = row.lobes] { return gpu::lobesShader(lobes); }};
 }
 
 Made standardMaterial(const CandidateSource& source, const char* target) {
@@ -221,9 +223,11 @@ public:
                   .spec = optionsOf(form),
                   .bytes = representation.bytes(),
                   .commands = std::move(commands)};
-        made.write = [=, kept = std::move(representation)](FileSet& files) {
-            files.write(file, [&](AtomicFile& open) { writeRepresentation(kept, open); });
+        const auto kept = std::make_shared<const Representation>(std::move(representation));
+        made.write = [=](FileSet& files) {
+            files.write(file, [&](AtomicFile& open) { writeRepresentation(*kept, open); });
         };
+        made.shader = [=] { return gpu::timedShader(*kept); };
         return made;
     }
 
@@ -247,7 +251,7 @@ std::vector<Candidate> formulaCandidates(const CandidateSource& source) {
         candidates.push_back({"model", "the model itself", [&] { return theModel(source); }});
     for (const LobeModel& row : lobeModels)
         candidates.push_back(
-            {"lobes", row.name, [&source, &row] { return fittedLobes(source, row.model); }});
+            {"lobes", row.name, [&source, &row] { return fittedLobes(source, row); }});
     for (const StandardMaterial& row : standardMaterials)
         candidates.push_back({row.kind, row.name,
                               [&source, &row] { return standardMaterial(source, row.target); },

@@ -69,6 +69,10 @@ constexpr OptionRow chooseRows[] = {
         .takes({kindWords, Syntax::list}),
     OptionRow{"bytes", at<&ChooseOptions::bytes>, "Recommend nothing that takes more"}.within(
         Bounds<double>{1, 1e15}),
+    OptionRow{"cost", at<&ChooseOptions::cost>,
+              "Recommend nothing whose shader takes more cycles of an AMD GPU for 64 threads, as "
+              "Mesa's compiler states them without a card; a renderer's own shaders keep to it"}
+        .within(Bounds<double>{1, 1e9}),
     OptionRow{"error", at<&ChooseOptions::error>,
               "Mean FLIP of a faithful material at most (default: 0.1); if it is stated, nothing "
               "else is recommended"}

@@ -170,6 +170,35 @@ TEST_F(ChooseCommand, LeavesOutWhatTheTimeIsTooShortFor) {
     expectError("choose ggx:alpha=.4 --seconds 0.01", 4, "of 0.01 are spent", 0);
 }
 
+/// Orders that have more terms cost more; what the bound excludes is not taken.
+TEST_F(ChooseCommand, StatesAndBoundsTheCostOfShaders) {
+    const std::string asked = std::string("choose ") + matte + " --json --kinds lobes";
+    const Json answer = Json::parse(run(asked + ",halfway").out);
+    if (answer["costs"]["device"].is_null()) GTEST_SKIP() << answer["costs"]["reason"];
+    std::map<std::string, std::uint64_t> cycles;
+    for (const Json& row : answer["rows"]) cycles[row["name"]] = row["cost"]["cycles"];
+    EXPECT_EQ(cycles["Lambert + GGX"], answer["costs"]["ggx"]["cycles"]);
+    EXPECT_LT(cycles["Lambert"], cycles["Lambert + GGX"]);
+    EXPECT_LT(cycles["Lambert + 2 GGX"], cycles["halfway 5,4,3 in half"]);
+    EXPECT_LT(cycles["halfway 5,4,3 in half"], cycles["halfway 7,6,5 in half"]);
+    const std::uint64_t bound = cycles["Lambert + GGX"];
+    const Answer bounded = run(asked + fmt::format(" --cost {}", bound));
+    ASSERT_TRUE(keepsSchema(bounded.out, "choose"));
+    for (const Json& row : Json::parse(bounded.out)["rows"])
+        EXPECT_EQ(row["unfit"].is_null(), row["cost"]["cycles"] <= bound) << row["name"];
+}
+
+TEST_F(ChooseCommand, SaysThatTheDriverIsMissing) {
+    setenv("VK_ICD_FILENAMES", "/nonexistent", 1);
+    const Answer answer = run("choose lambert --kinds model --json");
+    expectError("choose lambert --kinds model --cost 100", 4, "install mesa-vulkan-drivers", 0);
+    unsetenv("VK_ICD_FILENAMES");
+    ASSERT_TRUE(keepsSchema(answer.out, "choose"));
+    const Json document = Json::parse(answer.out);
+    EXPECT_TRUE(document["costs"]["device"].is_null());
+    EXPECT_TRUE(document["rows"][0]["cost"].is_null());
+}
+
 TEST_F(ChooseCommand, RefusesWhatItDoesNotKnow) {
     expectError("choose lambert --for thre", 2, "did you mean 'three'", 0);
     expectError("choose lambert --kinds model,lobe", 2, "did you mean 'lobes'", 0);

@@ -44,10 +44,18 @@ struct Measurement {
     PoorBounds bounds;
     PictureReference pictures;
     std::optional<PairReference> pairs;
+    std::optional<gpu::ShaderCosts> costs = {};
+    std::string noCosts = {};
 
     Measurement(const Brdf& brdf, const ChoiceOptions& how)
         : source(brdf), options(how), pictures(brdf), pairs(referenceOf(brdf)) {
         if (how.error) bounds.flip = *how.error;
+        try {
+            costs.emplace();
+        } catch (const NumericError& error) {
+            if (how.cycles) throw;
+            noCosts = error.what();
+        }
     }
 
     Row rowOf(const Candidate& candidate, Made made) const {
@@ -57,11 +65,14 @@ struct Measurement {
         row.captured = capturedBy(g, pairs, source);
         row.poor = poorReason(row.captured, row.picture, bounds);
         row.lost = lossSentence(row.picture);
+        if (costs && row.made.shader) row.cost = costs->of(row.made.shader());
         const std::vector<std::string>& kinds = options.kinds;
         if (!kinds.empty() && std::ranges::find(kinds, row.kind) == kinds.end())
             row.unfit = fmt::format("not for {}", options.renderer);
         else if (options.bytes && row.made.bytes > *options.bytes)
             row.unfit = fmt::format("more than {} bytes", *options.bytes);
+        else if (options.cycles && row.cost && row.cost->cycles > *options.cycles)
+            row.unfit = fmt::format("more than {} cycles", *options.cycles);
         return row;
     }
 };
@@ -122,7 +133,10 @@ Choice choose(const Brdf& source, std::vector<Candidate> candidates, const Choic
     Choice choice{.source = source.name(),
                   .renderer = options.renderer,
                   .maxBytes = options.bytes,
-                  .error = measurement.bounds.flip};
+                  .error = measurement.bounds.flip,
+                  .maxCycles = options.cycles,
+                  .noCosts = measurement.noCosts};
+    if (measurement.costs) choice.costs = {measurement.costs->device(), measurement.costs->ggx()};
     std::optional<Row*> best;
     choice.rows.reserve(candidates.size());
     for (std::size_t k = 0; k < candidates.size(); ++k) {

@@ -2,10 +2,12 @@
 
 #include <hshfit/brdf/brdf.h>
 #include <hshfit/files/file_set.h>
+#include <hshfit/gpu/timing/shader_costs.h>
 #include <hshfit/pictures/picture_error.h>
 #include <hshfit/pictures/poor.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -23,6 +25,8 @@ struct Made {
     std::size_t bytes = 0;
     std::vector<std::string> commands = {};  ///< that write it, in this order; none: no file
     std::function<void(FileSet&)> write = {};
+    /// Its shader, whose cost is stated; none: a renderer has its own.
+    std::function<gpu::TimedShader()> shader = {};
 };
 
 /// A way to have a material in a renderer, before it is made.
@@ -40,9 +44,10 @@ struct Row {
     PictureError picture = {};
     /// The share of the energy of f cos(theta_i) cos(theta_o); none where that does not exist.
     std::optional<double> captured = {};
-    std::optional<std::string> poor = {};  ///< pictures/poor.h, with the error asked for
-    std::string lost = {};                 ///< a sentence without its point
-    std::string unfit = {};                ///< why this renderer and these bounds do not take it
+    std::optional<std::string> poor = {};      ///< pictures/poor.h, with the error asked for
+    std::string lost = {};                     ///< a sentence without its point
+    std::optional<gpu::ShaderCost> cost = {};  ///< none: not known (Made::shader)
+    std::string unfit = {};  ///< why this renderer and these bounds do not take it
 };
 
 /// A candidate that was not measured, and why: an error, or no time left.
@@ -56,10 +61,19 @@ struct ChoiceOptions {
     std::optional<std::size_t> bytes = {};
     /// The mean FLIP that a faithful row has at most. Where it is stated, no other is recommended.
     std::optional<double> error = {};
+    /// Cycles of an AMD GPU for a wave of 64 threads, at most (ShaderCost); rows of which none are
+    /// known keep to it.
+    std::optional<std::uint64_t> cycles = {};
     /// Processor time of all candidates: one that would exceed it is left out.
     double cpuSeconds = 50;
     std::function<void(std::size_t, std::size_t)> progress = {};
     std::function<void(const Row&)> found = {};  ///< a faithful row that is the best so far
+};
+
+/// The device whose costs are stated, and a cost to see them by.
+struct CostScale {
+    std::string device;
+    gpu::ShaderCost ggx = {};  ///< of Lambert with a lobe of GGX
 };
 
 /// The materials that a source can be, by rising bytes, and the one to take.
@@ -68,6 +82,9 @@ struct Choice {
     std::string renderer;
     std::optional<std::size_t> maxBytes = {};
     double error = 0;  ///< the mean FLIP that counts as faithful
+    std::optional<std::uint64_t> maxCycles = {};
+    std::optional<CostScale> costs = {};
+    std::string noCosts = {};  ///< why costs are not stated
     std::vector<Row> rows = {};
     std::vector<LeftOut> leftOut = {};
     std::optional<std::size_t> recommended = {};  ///< into `rows`
@@ -83,7 +100,8 @@ inline constexpr std::size_t smallestBytes = 128;
 /// Recommended is, of the rows that the renderer takes within the bounds and that are not poor, the
 /// one of fewest bytes, where `smallestBytes` and less count alike; of equal ones that of the least
 /// mean FLIP. Where all are poor and no error was stated: of the rows within a tenth of the least
-/// mean FLIP that of fewest bytes. Throws NumericError where no candidate could be made.
+/// mean FLIP that of fewest bytes. Throws NumericError where no candidate could be made, and where
+/// cycles are bounded and costs are not known.
 Choice choose(const Brdf& source, std::vector<Candidate> candidates, const ChoiceOptions& options);
 
 /// The losses that an eye sees, for people: "7 % too bright in B; a false dip of 12 % in the

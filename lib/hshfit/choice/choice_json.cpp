@@ -15,11 +15,24 @@ Json textOrNull(const std::string& text) {
     return text.empty() ? Json(nullptr) : Json(text);
 }
 
+Json costJson(const gpu::ShaderCost& cost) {
+    return {{"instructions", cost.instructions},
+            {"registers", cost.registers},
+            {"spilled", cost.spilled},
+            {"cycles", cost.cycles}};
+}
+
+Json costsJson(const Choice& choice) {
+    if (!choice.costs) return {{"device", nullptr}, {"reason", choice.noCosts}};
+    return {{"device", choice.costs->device}, {"ggx", costJson(choice.costs->ggx)}};
+}
+
 Json rowJson(const Row& row) {
     return {{"kind", row.kind},
             {"name", row.name},
             {"spec", row.made.spec},
             {"bytes", row.made.bytes},
+            {"cost", row.cost ? costJson(*row.cost) : Json(nullptr)},
             {"lost", row.lost},
             {"poor", row.poor ? Json(*row.poor) : Json(nullptr)},
             {"unfit", textOrNull(row.unfit)},
@@ -42,7 +55,9 @@ std::string choiceJson(const Choice& choice) {
         {"source", choice.source},
         {"renderer", choice.renderer},
         {"max_bytes", choice.maxBytes ? Json(*choice.maxBytes) : Json(nullptr)},
+        {"max_cycles", choice.maxCycles ? Json(*choice.maxCycles) : Json(nullptr)},
         {"error", choice.error},
+        {"costs", costsJson(choice)},
         {"recommended", choice.recommended ? Json(*choice.recommended) : Json(nullptr)},
         {"faithful", choice.faithful},
         {"why", choice.why},

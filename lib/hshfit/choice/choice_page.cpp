@@ -40,6 +40,14 @@ data rowData(const Choice& choice, std::size_t k, const std::vector<SpherePictur
     entry.set("class", choice.recommended == k ? "best" : row.unfit.empty() ? "" : "unfit");
     entry.set("taken", choice.recommended == k);
     entry.set("bytes", std::to_string(row.made.bytes));
+    entry.set("cycles", cyclesText(row));
+    if (row.cost) {
+        entry.set("cost", fmt::format("{} instructions, {} vector registers{}",
+                                      row.cost->instructions, row.cost->registers,
+                                      row.cost->spilled > 0
+                                          ? fmt::format(", {} of them spilled", row.cost->spilled)
+                                          : ""));
+    }
     entry.set("flip", fmt::format("{:.3f}", picture.flip.mean));
     entry.set("largest", fmt::format("{:.3f}", picture.flip.largest));
     entry.set("light", picture.flip.light);
@@ -65,6 +73,8 @@ std::string choicePage(const Choice& choice, const Brdf& source) {
     page.set("renderer", choice.renderer);
     page.set("error", fmt::format("{:g}", choice.error));
     if (choice.maxBytes) page.set("maxBytes", std::to_string(*choice.maxBytes));
+    if (choice.maxCycles) page.set("maxCycles", std::to_string(*choice.maxCycles));
+    page.set("costs", costsText(choice));
     page.set("why", choice.why);
     page.set("recommends", choice.recommended.has_value());
     page.set("faithful", choice.faithful);

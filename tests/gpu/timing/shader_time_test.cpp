@@ -6,6 +6,9 @@
 #include <hshfit/projection/projection.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 
+#include <brdfs/catalog.h>
+
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -74,6 +77,14 @@ void expectSums(const Brdf& brdf, const std::vector<float>& sums) {
 
 std::unique_ptr<Brdf> nothingToOpen(const std::string& spec) {
     throw std::runtime_error("opens " + spec);
+}
+
+/// The formula that forms stand beside is the model's.
+TEST_F(TimedShaders, LobesAreLambertAndGgx) {
+    const auto brdf = brdfs::open(
+        fmt::format("lambert:kd={}/{}/{} + ggx:alpha={},F0=.5/.6/.3 + ggx:alpha=.2,F0=.3333/.6/.3",
+                    0.1 * pi, 0.05 * pi, 0.02 * pi, std::sqrt(0.08)));
+    expectSums(*brdf, sumsOf(gpu::lobesShader(2)));
 }
 
 /// The cosine between the view and the light is 0.8 in every frame.

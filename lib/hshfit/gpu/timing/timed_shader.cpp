@@ -7,11 +7,13 @@
 #include <hshfit/gpu/shader.h>
 #include <hshfit/representation/named_arrays.h>
 
+#include <fmt/format.h>
+
 #include <cstdint>
 #include <string_view>
 
 namespace hshfit::embedded {
-extern const std::string_view timed_pixels;
+extern const std::string_view lobes, timed_pixels;
 }
 
 namespace hshfit::gpu::inline timing {
@@ -95,6 +97,19 @@ TimedShader timedShader(const Representation& form) {
              {.binding = 0,
               .kind = ComputeResource::Kind::sampledTexture,
               .texels = std::move(payload.coefficients)}}};
+}
+
+TimedShader lobesShader(int lobes) {
+    data page, each{data::type::list};
+    for (int k = 1; k <= lobes; ++k) {
+        // Unlike each other, so that none is shared.
+        data lobe("a2", fmt::format("{:.4f}", 0.08 / k));
+        lobe.set("f0", fmt::format("{:.4f}", 1.0 / (k + 1)));
+        each.push_back(lobe);
+    }
+    page.set("lobes", each);
+    const Channels rgb{.kind = Channels::Kind::rgb};
+    return {wrapped(filledText(embedded::lobes, page), rgb), {sumsBuffer()}};
 }
 
 TimedShader bareShader() {

@@ -24,6 +24,10 @@ constexpr std::uint32_t sumsBinding = 3;
 /// fewest bytes that holds them. Throws UsageError for a form without a shader of its own.
 TimedShader timedShader(const Representation& form);
 
+/// The same for the formula of Lambert and lobes of GGX, with its numbers as constants: what forms
+/// stand beside.
+TimedShader lobesShader(int lobes);
+
 /// The same without the form, which stores the cosine between wo and wi: what the measurement
 /// takes.
 TimedShader bareShader();

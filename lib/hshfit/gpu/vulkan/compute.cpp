@@ -1,10 +1,10 @@
 #include <hshfit/gpu/vulkan/compute.h>
 
 #include <hshfit/error.h>
+#include <hshfit/gpu/vulkan/internal/pipelines.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <vulkan/vulkan_raii.hpp>
 
 #include <algorithm>
 #include <array>
@@ -70,19 +70,6 @@ vk::raii::PhysicalDevice chosenDevice(const vk::raii::Instance& instance,
     throw NumericError(
         fmt::format("there is no Vulkan device of this kind and name; found: {}",
                     names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
-}
-
-template <class Make>
-auto vulkanCall(const Make& make) {
-    try {
-        return make();
-    } catch (const vk::Error& error) {
-        throw NumericError(fmt::format("Vulkan failed: {}", error.what()));
-    } catch (const Error&) {
-        throw;
-    } catch (const std::runtime_error& error) {
-        throw NumericError(fmt::format("there is no Vulkan here: {}", error.what()));
-    }
 }
 
 }  // namespace
@@ -260,22 +247,6 @@ private:
     }
 };
 
-vk::DescriptorType typeOf(ComputeResource::Kind kind) {
-    switch (kind) {
-        case ComputeResource::Kind::sampledTexture:
-            return vk::DescriptorType::eCombinedImageSampler;
-        case ComputeResource::Kind::texture:
-            return vk::DescriptorType::eSampledImage;
-        case ComputeResource::Kind::sampler:
-            return vk::DescriptorType::eSampler;
-        case ComputeResource::Kind::uniforms:
-            return vk::DescriptorType::eUniformBuffer;
-        case ComputeResource::Kind::buffer:
-            break;
-    }
-    return vk::DescriptorType::eStorageBuffer;
-}
-
 vk::SamplerCreateInfo linearSampler() {
     constexpr auto edge = vk::SamplerAddressMode::eClampToEdge;
     return {{},
@@ -314,23 +285,15 @@ struct ComputeProgram::Parts {
         : device(owner),
           resources(std::move(given)),
           sampler(owner.device, linearSampler()),
-          setLayout(makeSetLayout()),
+          setLayout(setLayoutOf(owner.device, resources)),
           layout(owner.device, vk::PipelineLayoutCreateInfo({}, *setLayout)),
           pool(makePool()),
           sets(owner.device, vk::DescriptorSetAllocateInfo(*pool, *setLayout)),
-          pipeline(makePipeline(spirv)),
+          pipeline(pipelineOf(owner.device, layout, spirv)),
           stamps(owner.device, vk::QueryPoolCreateInfo({}, vk::QueryType::eTimestamp, 2)) {
         for (const ComputeResource& resource : resources) attach(resource);
     }
 
-    vk::raii::DescriptorSetLayout makeSetLayout() const {
-        std::vector<vk::DescriptorSetLayoutBinding> bindings;
-        for (const ComputeResource& resource : resources) {
-            bindings.emplace_back(resource.binding, typeOf(resource.kind), 1,
-                                  vk::ShaderStageFlagBits::eCompute);
-        }
-        return {device.device, vk::DescriptorSetLayoutCreateInfo({}, bindings)};
-    }
     vk::raii::DescriptorPool makePool() const {
         std::vector<vk::DescriptorPoolSize> sizes;
         for (const ComputeResource& resource : resources)
@@ -338,14 +301,6 @@ struct ComputeProgram::Parts {
         return {device.device, vk::DescriptorPoolCreateInfo(
                                    vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, sizes)};
     }
-    vk::raii::Pipeline makePipeline(std::span<const std::uint32_t> spirv) const {
-        const vk::raii::ShaderModule code(
-            device.device, vk::ShaderModuleCreateInfo({}, spirv.size_bytes(), spirv.data()));
-        const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *code,
-                                                      "main");
-        return {device.device, nullptr, vk::ComputePipelineCreateInfo({}, stage, *layout)};
-    }
-
     void attach(const ComputeResource& resource) {
         using Kind = ComputeResource::Kind;
         std::optional<Buffer>& buffer = buffers.emplace_back();

@@ -1,5 +1,6 @@
 #include <hshfit/error.h>
 #include <hshfit/gpu/vulkan/compute.h>
+#include <hshfit/gpu/vulkan/cost.h>
 #include <hshfit/gpu/vulkan/spirv.h>
 
 namespace hshfit::gpu::inline vulkan {
@@ -38,6 +39,17 @@ double ComputeProgram::run(std::uint32_t) {
     refuse();
 }
 std::vector<float> ComputeProgram::read(std::uint32_t) const {
+    refuse();
+}
+
+struct AmdCompiler::Parts {};
+
+AmdCompiler::AmdCompiler() {
+    refuse();
+}
+AmdCompiler::~AmdCompiler() = default;
+ShaderCost AmdCompiler::costOf(std::span<const std::uint32_t>,
+                               std::span<const ComputeResource>) const {
     refuse();
 }
 

@@ -1,0 +1,13 @@
+#include <hshfit/gpu/timing/shader_costs.h>
+
+#include <hshfit/gpu/vulkan/spirv.h>
+
+namespace hshfit::gpu::inline timing {
+
+ShaderCosts::ShaderCosts() : ggx_(of(lobesShader(1))) {}
+
+ShaderCost ShaderCosts::of(const TimedShader& shader) const {
+    return compiler_.costOf(compileGlsl(shader.source), shader.resources);
+}
+
+}  // namespace hshfit::gpu::inline timing
