@@ -1,5 +1,6 @@
 #include "plan.h"
 
+#include <jobs/exports/formula_candidates.h>
 #include <jobs/source/source.h>
 #include "scene_surfaces.h"
 
@@ -11,6 +12,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
 namespace hshfit::jobs {
 namespace {
@@ -35,6 +38,10 @@ plan::Plan planScene(const std::string& path, const std::string& output,
     }
     plan::PlanOptions how = options;
     if (!read.objects.empty() && !read.cameras.empty()) how.seen = seenIn(read);
+    how.makeFormulas = [](const Brdf& brdf, const scene::Material& material,
+                          const std::vector<std::string>& kinds) {
+        return formulaCandidates({brdf, material.brdf, material.name}, kinds);
+    };
     how.progress = listener.part("plan");
     plan::Plan result = plan::planScene(
         read, [](const std::string& spec) { return openBrdf(spec); }, how);

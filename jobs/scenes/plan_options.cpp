@@ -1,6 +1,7 @@
 #include "plan.h"
 
 #include <jobs/common/option_words.h>
+#include <jobs/exports/formula_candidates.h>
 
 namespace hshfit::jobs {
 namespace {
@@ -12,6 +13,8 @@ constexpr OptionRow planRows[] = {
     OptionRow{"bases", at<&PlanOptions::bases>, "Bases to try, orthonormal ones"}.takes(
         {basisLists, Syntax::list}),
     OptionRow{"max-order", at<&PlanOptions::maxOrder>, "Bands to try"}.within(bounds::planOrder),
+    costsRow(at<&PlanOptions::costs>),
+    formulasRow(at<&PlanOptions::formulas>),
     OptionRow{"by-time", at<&PlanOptions::byTime>,
               "Of the forms within the budget, the fastest instead of the smallest; what is "
               "measured may differ between runs"},

@@ -41,12 +41,7 @@ const Renderer table[] = {
     {"osl", "OSL 1.10", shaded, "osl"},
 };
 
-constexpr CandidateKind kindTable[] = {
-    {"model", "the specification itself, of models"},
-    {"lobes", "fits of Lambert and GGX lobes"},
-    {"gltf", "glTF's material"},
-    {"openpbr", "OpenPBR Surface"},
-    {"usd", "UsdPreviewSurface of OpenUSD, with MaterialX by reference", true},
+constexpr CandidateKind fileKinds[] = {
     {"halfway", "the halfway form"},
     {"coefficients", "both directions in a basis, or coefficients per outgoing direction"},
     {"bsdf", "a file of the RGL format", true},
@@ -55,12 +50,18 @@ constexpr CandidateKind kindTable[] = {
 }  // namespace
 
 std::span<const CandidateKind> candidateKinds() {
-    return kindTable;
+    static const std::vector<CandidateKind> kinds = [] {
+        std::vector<CandidateKind> all(formulaKinds().begin(), formulaKinds().end());
+        all.insert(all.end(), std::begin(fileKinds), std::end(fileKinds));
+        return all;
+    }();
+    return kinds;
 }
 
 void requireKind(std::string_view name) {
-    if (std::ranges::find(kindTable, name, &CandidateKind::name) == std::end(kindTable))
-        throw spelling::unknown("kind", name, spelling::namesOf(candidateKinds()));
+    const std::span<const CandidateKind> kinds = candidateKinds();
+    if (std::ranges::find(kinds, name, &CandidateKind::name) == kinds.end())
+        throw spelling::unknown("kind", name, spelling::namesOf(kinds));
 }
 
 std::span<const Renderer> renderers() {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <jobs/exports/formula_candidates.h>
+
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,11 +18,7 @@ struct Renderer {
     std::string_view target = {};
 };
 
-/// A kind of candidates.
-struct CandidateKind {
-    std::string_view name, help;
-    bool alone = false;  ///< measured only for renderers that take it
-};
+/// Kinds of candidates: formulas and files.
 std::span<const CandidateKind> candidateKinds();
 /// Throws UsageError that lists the known ones.
 void requireKind(std::string_view name);

@@ -1,13 +1,9 @@
 #include "stand_ins.h"
 
-#include <jobs/exports/export_material.h>
-#include <jobs/fits/fit.h>
 #include <jobs/source/source.h>
 #include "convert.h"
 
 #include <hshfit/coefficient_files/representation_file.h>
-#include <hshfit/error.h>
-#include <hshfit/files/json_fields.h>
 #include <hshfit/files/mapped_file.h>
 #include <hshfit/files/temporary_file.h>
 #include <hshfit/representation/forms/represented_brdf.h>
@@ -33,100 +29,6 @@ using choice::Candidate;
 using choice::Made;
 using Kind = Representation::Kind;
 
-/// A row of fits: sums from few lobes to many.
-struct LobeModel {
-    const char *name, *model;
-    int lobes;  ///< of GGX
-};
-constexpr LobeModel lobeModels[] = {
-    {"Lambert", "lambert", 0},
-    {"Lambert + GGX", "lambert+ggx", 1},
-    {"Lambert + 2 GGX", "lambert+ggx+ggx", 2},
-};
-
-/// A row of standard materials; `kind` is that of the candidates.
-struct StandardMaterial {
-    const char *kind, *name, *target;
-    double seconds;  ///< Candidate::seconds, of tables
-};
-constexpr StandardMaterial standardMaterials[] = {
-    {"gltf", "glTF material", "gltf", 20},
-    {"openpbr", "OpenPBR Surface", "materialx", 40},
-    {"usd", "UsdPreviewSurface", "usd", 60},
-};
-
-/// Four bytes for each number of a specification, as for what coefficient files add.
-std::size_t formulaBytes(const std::string& spec) {
-    Representation formula;
-    formula.added = spec;
-    formula.content = MatrixFactors{};
-    return formula.bytes();
-}
-
-bool isModel(const Brdf& brdf) {
-    std::int64_t terms = 1, models = 0;
-    for (const Fact& fact : brdf.facts()) {
-        if (fact.first == "terms") terms = std::get<std::int64_t>(fact.second);
-        models += fact.first == "model" || fact.first.ends_with("_model") ? 1 : 0;
-    }
-    return models == terms;
-}
-
-std::string command(const char* function, const std::string& subject, std::vector<Setting> settings,
-                    const std::string& output) {
-    return fmt::format("{}", Call{.function = function,
-                                  .subject = subject,
-                                  .settings = std::move(settings),
-                                  .output = output});
-}
-
-std::string presetOf(const std::string& spec) {
-    return jsonText(nlohmann::ordered_json{{"format", "hshfit-preset"},
-                                           {"version", 1},
-                                           {"spec", spec},
-                                           {"source", "the model itself"}},
-                    2) +
-           "\n";
-}
-
-Made theModel(const CandidateSource& source) {
-    const std::string spec = source.brdf.name(), file = source.name + ".json";
-    return {
-        .brdf = nullptr, .spec = spec, .bytes = formulaBytes(spec), .write = [=](FileSet& files) {
-            files.write(file, presetOf(spec));
-        }};
-}
-
-Made fittedLobes(const CandidateSource& source, const LobeModel& row) {
-    const FitOptions how{.model = row.model, .accept = true, .rgb = true, .advise = false};
-    const Fitted fitted = fitBrdf(source.brdf, source.spec, how);
-    const std::string file = source.name + ".json", text = presetText(fitted);
-    std::vector<Setting> settings{{"FitOptions::model", row.model}};
-    if (!fitted.result.converged) settings.push_back({"FitOptions::accept"});
-    return {.brdf = openBeside(fitted.result.spec, source.brdf),
-            .spec = fitted.result.spec,
-            .bytes = formulaBytes(fitted.result.spec),
-            .commands = {command("fit", source.spec, settings, file)},
-            .write = [=](FileSet& files) { files.write(file, text); },
-            .shader = [lobes = row.lobes] { return gpu::lobesShader(lobes); }};
-}
-
-Made standardMaterial(const CandidateSource& source, const char* target) {
-    const MaterialExportOptions how{.targets = target, .name = source.name, .advise = false};
-    const std::vector<ExportedMaterial> all = makeMaterials(source.spec, how).files;
-    const ExportedMaterial& made = all.back();  // MaterialX precedes a layer that refers to it
-    return {.brdf = openBeside(made.spec, source.brdf),
-            .spec = made.spec,
-            .bytes = formulaBytes(made.spec),
-            .commands = {command(
-                "export", source.spec,
-                {{"ExportOptions::targets", target}, {"ExportOptions::name", source.name}},
-                source.name)},
-            .write = [=](FileSet& files) {
-                for (const ExportedMaterial& each : all) files.write(each.path, each.content);
-            }};
-}
-
 Made converted(const CandidateSource& source) {
     const std::string file = source.name + ".bsdf";
     const auto kept = std::make_shared<TemporaryFile>(file);
@@ -136,7 +38,7 @@ Made converted(const CandidateSource& source) {
     return {.brdf = openBeside(kept->path(), source.brdf),
             .spec = file,
             .bytes = made.bytes,
-            .commands = {command("convert", source.spec, {}, file)},
+            .commands = {commandOf("convert", source.spec, {}, file)},
             .write = [=](FileSet& files) {
                 const MappedFile content(kept->path());
                 files.write(file, std::string(content.bytes().begin(), content.bytes().end()));
@@ -151,7 +53,7 @@ std::string rglPathOf(const CandidateSource& source) {
     return path == source.spec && std::ranges::find(facts, rgl) != facts.end() ? path : "";
 }
 
-std::string nameOf(const Form& form) {
+std::string formName(const Form& form) {
     const std::string precision = fmt::format(" in {}", precisionName(form.precision));
     if (form.kind == Kind::halfway) {
         const HalfwayOrders& o = form.halfway;
@@ -215,10 +117,10 @@ public:
         if (form.kind != Kind::halfway)
             settings.push_back(
                 {"ProjectionOptions::tolerance", fmt::format("{}", toleranceOf(source_.brdf))});
-        std::vector<std::string> commands{command("project", source_.spec, settings, file)};
+        std::vector<std::string> commands{commandOf("project", source_.spec, settings, file)};
         if (!target.empty())
             commands.push_back(
-                command("export", file, {{"ExportOptions::targets", target}}, source_.name));
+                commandOf("export", file, {{"ExportOptions::targets", target}}, source_.name));
         Made made{.brdf = reconstruct(representation, sourceOpener()),
                   .spec = optionsOf(form),
                   .bytes = representation.bytes(),
@@ -245,20 +147,6 @@ private:
 
 }  // namespace
 
-std::vector<Candidate> formulaCandidates(const CandidateSource& source) {
-    std::vector<Candidate> candidates;
-    if (isModel(source.brdf))
-        candidates.push_back({"model", "the model itself", [&] { return theModel(source); }});
-    for (const LobeModel& row : lobeModels)
-        candidates.push_back(
-            {"lobes", row.name, [&source, &row] { return fittedLobes(source, row); }});
-    for (const StandardMaterial& row : standardMaterials)
-        candidates.push_back({row.kind, row.name,
-                              [&source, &row] { return standardMaterial(source, row.target); },
-                              isModel(source.brdf) ? 4 : row.seconds});
-    return candidates;
-}
-
 Candidate bsdfCandidate(const CandidateSource& source) {
     const std::string path = rglPathOf(source);
     if (path.empty())
@@ -273,8 +161,9 @@ std::vector<Candidate> formCandidates(const CandidateSource& source, const std::
     const auto maker = std::make_shared<FormMaker>(source);
     std::vector<Candidate> candidates;
     for (const Form& form : formsFor(source.brdf))
-        candidates.push_back({form.kind == Kind::halfway ? "halfway" : "coefficients", nameOf(form),
-                              [=] { return maker->make(form, target); }, secondsOf(form)});
+        candidates.push_back({form.kind == Kind::halfway ? "halfway" : "coefficients",
+                              formName(form), [=] { return maker->make(form, target); },
+                              secondsOf(form)});
     return candidates;
 }
 

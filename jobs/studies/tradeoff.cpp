@@ -1,6 +1,7 @@
 #include "tradeoff.h"
 
 #include <jobs/common/pair_file.h>
+#include <jobs/exports/formula_candidates.h>
 #include <jobs/source/source.h>
 
 #include <hshfit/error.h>
@@ -79,6 +80,8 @@ void measureAll(MeasuredTradeoffs& result, const TradeoffOptions& options, FileS
                              pairsCsv(pairs, *brdf));
             }
             tradeoff::TradeoffOptions how = measurementOf(options);
+            const std::string named = options.rgb ? "rgb:" + spec : spec;
+            how.formulas = formulaCandidates({*brdf, named, nameOf(spec)}, options.formulas);
             how.progress = listener.part(spec);
             how.limit = limit.share(static_cast<double>(&result.specs.back() - &spec + 1));
             result.trades.push_back(measure(*brdf, pairs, how, open));

@@ -21,8 +21,9 @@ struct TradeoffOptions {
     double maxEvaluations = static_cast<double>(ProjectionOptions{}.maxEvaluations);
     bool gpu = false;         ///< time the shaders of the fronts' forms
     std::string device = {};  ///< any, gpu, software, or a part of its name; takes `gpu`
-    std::string pairs = {};   ///< CSV of pairs (readPairSample); empty: spread pairs
-    int pairCount = 32768;    ///< of spread pairs, about
+    std::vector<std::string> formulas = {"model", "lobes"};  ///< formulaCandidates
+    std::string pairs = {};  ///< CSV of pairs (readPairSample); empty: spread pairs
+    int pairCount = 32768;   ///< of spread pairs, about
     /// CSV to write: the pairs, their weights and the values of the one BRDF; empty: none.
     std::string writePairs = {};
     bool rgb = false;  ///< wavelengths as linear Rec. 709

@@ -35,6 +35,8 @@ constexpr OptionRow tradeoffRows[] = {
               "Time the shaders of the fronts' forms on a Vulkan device"},
     OptionRow{"device", at<&TradeoffOptions::device>,
               "any (a GPU if there is one), gpu, software, or a part of its name; with --gpu"},
+    costsRow(at<&TradeoffOptions::measurement, &tradeoff::TradeoffOptions::costs>),
+    formulasRow(at<&TradeoffOptions::formulas>),
     OptionRow{"by-time", at<&TradeoffOptions::measurement, &tradeoff::TradeoffOptions::byTime>,
               "Print the front over time instead of that over bytes"},
     OptionRow{"pair-count", at<&TradeoffOptions::pairCount>,

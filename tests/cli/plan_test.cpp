@@ -140,6 +140,25 @@ double relativeError(const Json& scene, const Json& material, const Brdf& truth,
     return std::sqrt(error / norm);
 }
 
+/// Errors of materials without coefficients by this test's integration, and the model itself, which
+/// has none.
+void expectFormulas(const Json& scene, const Json& material, const Json& formulas, double budget,
+                    bool planned) {
+    const auto truth = brdfs::open(std::string(material["brdf"]));
+    bool itself = false;
+    for (const Json& formula : formulas) {
+        const auto brdf = brdfs::open(std::string(formula["spec"]));
+        const double error = relativeError(scene, material, *truth, *brdf);
+        const double stated = formula["verified_error"];
+        EXPECT_NEAR(error, stated, 0.2 * std::max(stated, budget)) << formula["name"];
+        EXPECT_EQ(formula["within"], std::max<double>(stated, formula["error"]) <= budget);
+        if (formula["kind"] != "model") continue;
+        EXPECT_EQ(stated, 0);
+        itself = true;
+    }
+    EXPECT_EQ(itself, planned);  // light that is not resolved measures nothing
+}
+
 class PlanCommand : public Cli {
 protected:
     /// Plans an example, holds every material to its budget and size, and returns the report.
@@ -156,6 +175,8 @@ protected:
             const Json& material = report["materials"][k];
             const std::string written = path("plan/" + std::string(material["name"]) + ".json");
             EXPECT_EQ(fs::exists(written), material["planned"]) << material["name"];
+            expectFormulas(scene, scene["materials"][k], material["formulas"], budget,
+                           material["planned"]);
             if (!material["planned"]) continue;
             const Representation kept = readRepresentation(written);
             EXPECT_EQ(kept.bytes(), material["choice"]["bytes"]);

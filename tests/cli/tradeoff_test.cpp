@@ -75,6 +75,51 @@ TEST_F(TradeoffCommand, AnswersWithJsonThatKeepsItsSchema) {
     EXPECT_EQ(with, document["tradeoffs"]);
 }
 
+/// Materials without coefficients have the errors that `compare` states at the same pairs.
+TEST_F(TradeoffCommand, MeasuresFormulasAsCompareDoes) {
+    const std::string asked =
+        "tradeoff ggx:alpha=.4 --forms basis --bases hsh --orders 3 --json --no-timing --formulas ";
+    const Answer answer = run(asked + "model,lobes");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    const json formulas = json::parse(answer.out)["tradeoffs"][0]["formulas"];
+    ASSERT_EQ(formulas.size(), 4U);
+    for (const json& formula : formulas) {
+        const Answer compared =
+            run("compare ggx:alpha=.4 '" + std::string(formula["spec"]) + "' --json");
+        ASSERT_EQ(compared.code, 0) << compared.err;
+        const json with = json::parse(compared.out);
+        EXPECT_NEAR(with["pairs"]["mean_log"]["value"].get<double>(), formula["error"], 1e-12);
+        EXPECT_NEAR(with["picture"]["flip"]["mean"].get<double>(),
+                    formula["picture"]["flip"]["mean"], 1e-9);
+    }
+    const json none = json::parse(run(asked + "none").out);
+    EXPECT_FALSE(none["tradeoffs"][0].contains("formulas"));
+    expectError(asked + "lobe", 2, "did you mean 'lobes'", 0);
+}
+
+/// Costs are those of `choose` for the same form.
+TEST_F(TradeoffCommand, StatesTheCostsOfShaders) {
+    const Answer answer =
+        run("tradeoff ggx:alpha=.4 --forms halfway --halfway 5,4,3 --precisions half,unorm8 --json "
+            "--no-timing --costs");
+    if (answer.code == 4) GTEST_SKIP() << answer.err;
+    ASSERT_TRUE(keepsSchema(answer.out, "tradeoff"));
+    const json document = json::parse(answer.out)["tradeoffs"][0];
+    const json chosen =
+        json::parse(run("choose ggx:alpha=.4 --kinds lobes,halfway --json --seconds 8").out);
+    EXPECT_EQ(document["costs"], chosen["costs"]);
+    std::size_t alike = 0;
+    for (const json& front : document["front"]) {
+        const std::string options = document["forms"][front["form"].get<std::size_t>()]["options"];
+        for (const json& row : chosen["rows"]) {
+            if (row["spec"] != options) continue;
+            EXPECT_EQ(row["cost"], front["cost"]) << options;
+            ++alike;
+        }
+    }
+    EXPECT_GT(alike, 0U);
+}
+
 /// On the software renderer, which tests have; its times are labelled as such.
 TEST_F(TradeoffCommand, TimesTheShadersOfItsFronts) {
     const Answer answer = trade("--json --gpu --device software");

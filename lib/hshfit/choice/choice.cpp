@@ -1,6 +1,5 @@
 #include <hshfit/choice/choice.h>
 
-#include <hshfit/accuracy/pair_errors.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
@@ -22,60 +21,17 @@ double processorSeconds() {
     return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-std::optional<double> capturedBy(const Brdf& g, const std::optional<PairReference>& reference,
-                                 const Brdf& source) {
-    if (!reference || g.channels().count() != source.channels().count()) return std::nullopt;
-    const double left = reference->errorsOf(g).energyLeft;
-    return std::isfinite(left) ? std::optional(1 - left) : std::nullopt;
+/// Why the renderer or the bounds do not take a row; empty: they do.
+std::string unfitReason(const Row& row, const ChoiceOptions& options) {
+    const std::vector<std::string>& kinds = options.kinds;
+    if (!kinds.empty() && std::ranges::find(kinds, row.kind) == kinds.end())
+        return fmt::format("not for {}", options.renderer);
+    if (options.bytes && row.made.bytes > *options.bytes)
+        return fmt::format("more than {} bytes", *options.bytes);
+    if (options.cycles && row.cost && row.cost->cycles > *options.cycles)
+        return fmt::format("more than {} cycles", *options.cycles);
+    return "";
 }
-
-std::optional<PairReference> referenceOf(const Brdf& source) {
-    try {
-        return PairReference(source, spreadPairs());
-    } catch (const NumericError&) {
-        return std::nullopt;
-    }
-}
-
-/// The source with its pictures and pairs, against which rows are measured.
-struct Measurement {
-    const Brdf& source;
-    const ChoiceOptions& options;
-    PoorBounds bounds;
-    PictureReference pictures;
-    std::optional<PairReference> pairs;
-    std::optional<gpu::ShaderCosts> costs = {};
-    std::string noCosts = {};
-
-    Measurement(const Brdf& brdf, const ChoiceOptions& how)
-        : source(brdf), options(how), pictures(brdf), pairs(referenceOf(brdf)) {
-        if (how.error) bounds.flip = *how.error;
-        try {
-            costs.emplace();
-        } catch (const NumericError& error) {
-            if (how.cycles) throw;
-            noCosts = error.what();
-        }
-    }
-
-    Row rowOf(const Candidate& candidate, Made made) const {
-        Row row{.kind = candidate.kind, .name = candidate.name, .made = std::move(made)};
-        const Brdf& g = row.made.brdf ? *row.made.brdf : source;
-        row.picture = pictures.errorOf(g);
-        row.captured = capturedBy(g, pairs, source);
-        row.poor = poorReason(row.captured, row.picture, bounds);
-        row.lost = lossSentence(row.picture);
-        if (costs && row.made.shader) row.cost = costs->of(row.made.shader());
-        const std::vector<std::string>& kinds = options.kinds;
-        if (!kinds.empty() && std::ranges::find(kinds, row.kind) == kinds.end())
-            row.unfit = fmt::format("not for {}", options.renderer);
-        else if (options.bytes && row.made.bytes > *options.bytes)
-            row.unfit = fmt::format("more than {} bytes", *options.bytes);
-        else if (options.cycles && row.cost && row.cost->cycles > *options.cycles)
-            row.unfit = fmt::format("more than {} cycles", *options.cycles);
-        return row;
-    }
-};
 
 std::size_t countedBytes(const Row& row) {
     return std::max(row.made.bytes, smallestBytes);
@@ -129,14 +85,24 @@ void recommend(Choice& choice, bool errorStated) {
 
 Choice choose(const Brdf& source, std::vector<Candidate> candidates, const ChoiceOptions& options) {
     const double begin = processorSeconds();
-    const Measurement measurement(source, options);
+    PoorBounds bounds;
+    if (options.error) bounds.flip = *options.error;
+    std::optional<gpu::ShaderCosts> costs;
+    std::string noCosts;
+    try {
+        costs.emplace();
+    } catch (const NumericError& error) {
+        if (options.cycles) throw;
+        noCosts = error.what();
+    }
+    const RowMeasurement measurement(source, bounds, costs ? &*costs : nullptr);
     Choice choice{.source = source.name(),
                   .renderer = options.renderer,
                   .maxBytes = options.bytes,
-                  .error = measurement.bounds.flip,
+                  .error = bounds.flip,
                   .maxCycles = options.cycles,
-                  .noCosts = measurement.noCosts};
-    if (measurement.costs) choice.costs = {measurement.costs->device(), measurement.costs->ggx()};
+                  .noCosts = noCosts};
+    if (costs) choice.costs = {costs->device(), costs->ggx()};
     std::optional<Row*> best;
     choice.rows.reserve(candidates.size());
     for (std::size_t k = 0; k < candidates.size(); ++k) {
@@ -151,7 +117,8 @@ Choice choose(const Brdf& source, std::vector<Candidate> candidates, const Choic
             continue;
         }
         try {
-            Row& row = choice.rows.emplace_back(measurement.rowOf(candidate, candidate.make()));
+            Row& row = choice.rows.emplace_back(measurement.rowOf(candidate));
+            row.unfit = unfitReason(row, options);
             if (!isFaithful(row) || (best && !isBetter(row, **best))) continue;
             best = &row;
             if (options.found) options.found(row);

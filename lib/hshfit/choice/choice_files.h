@@ -15,11 +15,4 @@ std::string choiceText(const Choice& choice);
 /// The page: the table, and spheres of source, candidate and difference of each row.
 std::string choicePage(const Choice& choice, const Brdf& source);
 
-/// The cycles of a row ("-": not known), and a sentence without its point that says what they are.
-std::string cyclesText(const Row& row);
-std::string costsText(const Choice& choice);
-
-/// The commands that write a row, as one line of a shell; empty: there is no file to write.
-std::string commandLineOf(const Row& row);
-
 }  // namespace hshfit::choice

@@ -1,4 +1,5 @@
 #include <hshfit/choice/choice_files.h>
+#include <hshfit/choice/row_text.h>
 
 #include <hshfit/files/checksum.h>
 #include <hshfit/files/template_text.h>
@@ -40,7 +41,7 @@ data rowData(const Choice& choice, std::size_t k, const std::vector<SpherePictur
     entry.set("class", choice.recommended == k ? "best" : row.unfit.empty() ? "" : "unfit");
     entry.set("taken", choice.recommended == k);
     entry.set("bytes", std::to_string(row.made.bytes));
-    entry.set("cycles", cyclesText(row));
+    entry.set("cycles", cyclesText(row.cost));
     if (row.cost) {
         entry.set("cost", fmt::format("{} instructions, {} vector registers{}",
                                       row.cost->instructions, row.cost->registers,
@@ -74,7 +75,7 @@ std::string choicePage(const Choice& choice, const Brdf& source) {
     page.set("error", fmt::format("{:g}", choice.error));
     if (choice.maxBytes) page.set("maxBytes", std::to_string(*choice.maxBytes));
     if (choice.maxCycles) page.set("maxCycles", std::to_string(*choice.maxCycles));
-    page.set("costs", costsText(choice));
+    page.set("costs", choice.costs ? scaleText(*choice.costs) : "not stated: " + choice.noCosts);
     page.set("why", choice.why);
     page.set("recommends", choice.recommended.has_value());
     page.set("faithful", choice.faithful);

@@ -1,29 +1,13 @@
 #include <hshfit/choice/choice_files.h>
+#include <hshfit/choice/row_text.h>
 
 #include <hshfit/pages/report_files.h>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 
 namespace hshfit::choice {
-
-std::string commandLineOf(const Row& row) {
-    return fmt::format("{}", fmt::join(row.made.commands, " && "));
-}
-
-std::string cyclesText(const Row& row) {
-    return row.cost ? fmt::format("{}", row.cost->cycles) : "-";
-}
-
-std::string costsText(const Choice& choice) {
-    if (!choice.costs) return fmt::format("not stated: {}", choice.noCosts);
-    return fmt::format(
-        "of AMD's {} for 64 threads, by Mesa's compiler; Lambert with GGX takes {}; -: a renderer "
-        "has its own shader",
-        choice.costs->device, choice.costs->ggx.cycles);
-}
 
 std::string choiceText(const Choice& choice) {
     std::size_t width = 4;
@@ -34,15 +18,17 @@ std::string choiceText(const Choice& choice) {
     for (std::size_t k = 0; k < choice.rows.size(); ++k) {
         const Row& row = choice.rows[k];
         const PictureError& picture = row.picture;
-        text += fmt::format("{} {:>9} {:>6}  {:>5.3f} {:>7.3f} {:>6} {:>6}  {:<{}}  {}{}\n",
-                            choice.recommended == k ? "*" : " ", row.made.bytes, cyclesText(row),
-                            picture.flip.mean, picture.flip.largest, shareText(picture.dip),
-                            shareText(picture.peak), row.name, width, row.lost,
-                            !row.unfit.empty() ? fmt::format(" ({})", row.unfit)
-                            : row.poor         ? " (poor)"
-                                               : "");
+        text +=
+            fmt::format("{} {:>9} {:>6}  {:>5.3f} {:>7.3f} {:>6} {:>6}  {:<{}}  {}{}\n",
+                        choice.recommended == k ? "*" : " ", row.made.bytes, cyclesText(row.cost),
+                        picture.flip.mean, picture.flip.largest, shareText(picture.dip),
+                        shareText(picture.peak), row.name, width, row.lost,
+                        !row.unfit.empty() ? fmt::format(" ({})", row.unfit)
+                        : row.poor         ? " (poor)"
+                                           : "");
     }
-    text += fmt::format("  cycles: {}\n", costsText(choice));
+    text += fmt::format("  cycles: {}\n",
+                        choice.costs ? scaleText(*choice.costs) : "not stated: " + choice.noCosts);
     for (const LeftOut& line : choice.leftOut)
         text += fmt::format("  left out: {}: {}\n", line.name, line.reason);
     if (!choice.recommended) return text + fmt::format("no recommendation: {}\n", choice.why);

@@ -1,4 +1,4 @@
-#include <hshfit/choice/choice.h>
+#include <hshfit/choice/rows.h>
 
 #include <hshfit/brdf/directions.h>
 #include <hshfit/percent.h>

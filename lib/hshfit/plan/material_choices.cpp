@@ -137,6 +137,7 @@ std::optional<Accepted> MaterialSearch::accept(const Rung& rung) {
     const auto again = reconstruct(result.representation, open_);
     result.pairs = summaryOf(*version.brdf, *again);
     result.picture = pictureError(*version.brdf, *again);
+    result.cost = costOf(result.representation);
     return result;
 }
 

@@ -53,8 +53,8 @@ std::vector<double> cut(const double* rows, std::size_t channels, std::size_t sl
 }  // namespace
 
 MaterialSearch::MaterialSearch(const Scene& scene, const Material& material, const BrdfOpener& open,
-                               const PlanOptions& options)
-    : scene_(scene), open_(open), options_(options) {
+                               const PlanOptions& options, const gpu::ShaderCosts* costs)
+    : scene_(scene), open_(open), options_(options), costs_(costs) {
     plan_.material = material;
     ladderOptions_ = {.bases = options.bases,
                       .maxOrder = options.maxOrder,
@@ -252,7 +252,36 @@ MaterialPlan MaterialSearch::run() {
         takeCheapest();
     }
     if (!plan_.accepted) refuse();
+    measureFormulas();
     return std::move(plan_);
+}
+
+std::optional<gpu::ShaderCost> MaterialSearch::costOf(const Representation& representation) const {
+    if (!costs_) return std::nullopt;
+    try {
+        return costs_->of(gpu::timedShader(representation));
+    } catch (const UsageError&) {
+        return std::nullopt;  // a form without a shader of its own
+    }
+}
+
+void MaterialSearch::measureFormulas() {
+    if (!options_.makeFormulas) return;
+    const Version& whole = versions_.front();
+    const std::vector<choice::Candidate> candidates =
+        options_.makeFormulas(*whole.brdf, plan_.material, options_.formulas);
+    if (candidates.empty()) return;
+    const double budget = plan_.material.budget.error;
+    const choice::RowMeasurement measurement(*whole.brdf, {}, costs_);
+    for (choice::Row& row : choice::measureRows(measurement, candidates).rows) {
+        const Brdf& brdf = row.made.brdf ? *row.made.brdf : *whole.brdf;
+        const double error = light_->errorOf(light_->radianceOf(brdf));
+        const double verified = verify(scene_, plan_.material, *whole.brdf, brdf).error;
+        plan_.formulas.push_back({.row = std::move(row),
+                                  .error = error,
+                                  .verified = verified,
+                                  .within = error <= budget && verified <= budget});
+    }
 }
 
 }  // namespace hshfit::plan

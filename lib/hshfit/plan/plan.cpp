@@ -21,9 +21,9 @@ void requireUsable(const std::vector<std::string>& names) {
 }
 
 MaterialPlan planMaterial(const Scene& scene, const Material& material, const BrdfOpener& open,
-                          const PlanOptions& options) {
+                          const PlanOptions& options, const gpu::ShaderCosts* costs) {
     try {
-        return MaterialSearch(scene, material, open, options).run();
+        return MaterialSearch(scene, material, open, options, costs).run();
     } catch (const Error& error) {
         const std::string_view message = error.what();
         if (message.find(scene.file) != std::string_view::npos) throw;
@@ -37,6 +37,8 @@ MaterialPlan planMaterial(const Scene& scene, const Material& material, const Br
 Plan planScene(const Scene& given, const BrdfOpener& open, const PlanOptions& options) {
     requireUsable(options.bases);
     Plan plan{.scene = given, .materials = {}};
+    std::optional<gpu::ShaderCosts> costs;
+    if (options.costs) plan.costs = {costs.emplace().device(), costs->ggx()};
     Scene& scene = plan.scene;
     const bool cameras = options.seen.size() == scene.materials.size();
     if (cameras) takeSeen(scene, options.seen);
@@ -44,7 +46,8 @@ Plan planScene(const Scene& given, const BrdfOpener& open, const PlanOptions& op
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
         const Material& material = scene.materials[m];
         own.views = material.views.value_or(scene.views);
-        plan.materials.push_back(planMaterial(own, material, open, options));
+        plan.materials.push_back(
+            planMaterial(own, material, open, options, costs ? &*costs : nullptr));
         if (cameras) plan.materials.back().seen = options.seen[m];
         if (options.progress) options.progress(plan.materials.size(), scene.materials.size());
     }

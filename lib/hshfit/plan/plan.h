@@ -1,6 +1,7 @@
 #pragma once
 
 #include <hshfit/accuracy/pair_errors.h>
+#include <hshfit/choice/rows.h>
 #include <hshfit/pictures/picture_error.h>
 #include <hshfit/plan/seen_surfaces.h>
 #include <hshfit/representation/forms/form.h>
@@ -32,8 +33,17 @@ struct Accepted {
     std::vector<double> thetas = {}, errors = {};  ///< verified, by elevation (radians)
     /// Against the material over both hemispheres, whatever the light.
     PairSummary pairs = {};
-    PictureError picture = {};  ///< of the file against the material
-    std::size_t raised = 0;     ///< cheaper choices that failed only this check
+    PictureError picture = {};                 ///< of the file against the material
+    std::size_t raised = 0;                    ///< cheaper choices that failed only this check
+    std::optional<gpu::ShaderCost> cost = {};  ///< if asked for, and it has a shader
+};
+
+/// A material that is no coefficient file, in the scene's light.
+struct PlannedFormula {
+    choice::Row row;
+    double error = 0;     ///< the budget's measure
+    double verified = 0;  ///< as of Accepted
+    bool within = false;  ///< both keep to the budget
 };
 
 struct MaterialPlan {
@@ -42,7 +52,9 @@ struct MaterialPlan {
     std::optional<Accepted> accepted;
     /// The nearest cheaper choices, each the best for its bytes; without a plan, the best ones.
     std::vector<Choice> cheaper;
-    std::optional<Choice> dearer;      ///< the first with at most half the error
+    std::optional<Choice> dearer;  ///< the first with at most half the error
+    /// By rising bytes; none where samples do not resolve the light.
+    std::vector<PlannedFormula> formulas = {};
     std::string refused;               ///< reason why there is no plan; empty if there is one
     std::vector<std::string> instead;  ///< suggestions without a plan
     std::vector<std::string> rules;    ///< simplifications that the scene allows
@@ -56,7 +68,13 @@ struct MaterialPlan {
 struct Plan {
     Scene scene;
     std::vector<MaterialPlan> materials;
+    std::optional<choice::CostScale> costs = {};  ///< if asked for
 };
+
+/// The candidates of some kinds that are no coefficient files, for a material and its BRDF, which
+/// outlives them.
+using FormulaMaker = std::function<std::vector<choice::Candidate>(
+    const Brdf& brdf, const Material& material, const std::vector<std::string>& kinds)>;
 
 struct PlanOptions {
     std::vector<std::string> bases = {"hsh", "zernike", "makhotkin"};
@@ -64,6 +82,9 @@ struct PlanOptions {
     /// Each material as cameras see it (seenMaterials), in the place of orientations and views that
     /// the scene does not state. Empty: nothing is known.
     std::vector<SeenMaterial> seen = {};
+    bool costs = false;  ///< state what shaders cost on an AMD GPU (gpu::ShaderCosts)
+    std::vector<std::string> formulas = {"model", "lobes"};  ///< kinds to measure beside the forms
+    FormulaMaker makeFormulas = {};                          ///< none: no formulas
     bool byTime = false;  ///< measure nanoseconds and choose the fastest form within the budget
     std::function<void(std::size_t, std::size_t)> progress = {};
 };

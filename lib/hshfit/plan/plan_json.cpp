@@ -1,3 +1,4 @@
+#include <hshfit/choice/row_json.h>
 #include <hshfit/files/json_fields.h>
 #include <hshfit/pages/pair_summary_json.h>
 #include <hshfit/pages/picture_error_json.h>
@@ -33,6 +34,7 @@ Json acceptedJson(const Accepted& accepted, const std::string& file) {
         static_cast<double>(baselineBytes) / static_cast<double>(accepted.choice.bytes);
     json["verified_error"] = accepted.verified;
     json["raised"] = accepted.raised;
+    if (accepted.cost) json["cost"] = choice::costJson(*accepted.cost);
     json["picture"] = pictureErrorJson(accepted.picture);
     json["pairs"] = pairSummaryJson(accepted.pairs);
     Json rows = Json::array();
@@ -42,6 +44,19 @@ Json acceptedJson(const Accepted& accepted, const std::string& file) {
     }
     json["error_by_elevation"] = rows;
     return json;
+}
+
+Json formulasJson(const std::vector<PlannedFormula>& formulas) {
+    Json list = Json::array();
+    for (const PlannedFormula& formula : formulas) {
+        Json row = choice::rowJson(formula.row);
+        row["error"] = finiteOrNull(formula.error);
+        row["verified_error"] = finiteOrNull(formula.verified);
+        row["within"] = formula.within;
+        if (formula.row.cost) row["cost"] = choice::costJson(*formula.row.cost);
+        list.push_back(row);
+    }
+    return list;
 }
 
 Json seenJson(const SeenMaterial& seen) {
@@ -79,6 +94,7 @@ Json materialJson(const MaterialPlan& plan) {
     json["cheaper"] = Json::array();
     for (const Choice& each : plan.cheaper) json["cheaper"].push_back(choiceJson(each, file));
     if (plan.dearer) json["dearer"] = choiceJson(*plan.dearer, file);
+    json["formulas"] = formulasJson(plan.formulas);
     if (!plan.accepted) {
         json["refused"] = plan.refused;
         json["instead"] = plan.instead;
@@ -108,6 +124,7 @@ std::string planJson(const Plan& plan) {
                  {"limits", {{"bytes", scene.limits.bytes}}},
                  {"baseline_bytes", baselineBytes}};
     if (scene.limits.nanoseconds) json["limits"]["nanoseconds"] = *scene.limits.nanoseconds;
+    if (plan.costs) json["costs"] = choice::scaleJson(*plan.costs);
     json["materials"] = Json::array();
     for (const MaterialPlan& each : plan.materials) json["materials"].push_back(materialJson(each));
     return jsonText(json, 2) + '\n';

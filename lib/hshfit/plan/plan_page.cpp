@@ -1,3 +1,4 @@
+#include <hshfit/choice/row_text.h>
 #include <hshfit/files/template_text.h>
 #include <hshfit/pages/page_figures.h>
 #include <hshfit/pages/report_files.h>
@@ -60,6 +61,22 @@ data choiceRows(const MaterialPlan& plan) {
     return rows;
 }
 
+data formulaRows(const MaterialPlan& plan) {
+    data rows{data::type::list};
+    for (const PlannedFormula& formula : plan.formulas) {
+        data row("formula", formula.row.name);
+        row.set("class", formula.within ? "" : "unfit");
+        row.set("formulaBytes", std::to_string(formula.row.made.bytes));
+        row.set("formulaError", errorText(formula.verified));
+        row.set("flip", fmt::format("{:.3f}", formula.row.picture.flip.mean));
+        row.set("lost", formula.row.lost);
+        const std::string command = choice::commandLineOf(formula.row);
+        row.set("madeBy", command.empty() ? withoutFolders(formula.row.made.spec) : command);
+        rows.push_back(row);
+    }
+    return rows;
+}
+
 data elevationRows(const Accepted& accepted, double budget) {
     data rows{data::type::list};
     for (std::size_t k = 0; k < accepted.thetas.size(); ++k) {
@@ -104,6 +121,8 @@ data materialData(const MaterialPlan& plan) {
     entry.set("rules", listOf(plan.rules));
     entry.set("choices", choiceRows(plan));
     entry.set("hasChoices", plan.accepted.has_value() || !plan.cheaper.empty());
+    entry.set("formulas", formulaRows(plan));
+    entry.set("hasFormulas", !plan.formulas.empty());
     entry.set("bands", bandRows(plan.lightPower));
     entry.set("planned", plan.accepted.has_value());
     if (plan.accepted) {

@@ -1,3 +1,4 @@
+#include <hshfit/choice/row_text.h>
 #include <hshfit/coefficient_files/representation_file.h>
 #include <hshfit/files/file_set.h>
 #include <hshfit/pictures/poor.h>
@@ -6,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace hshfit::plan {
 namespace {
@@ -16,6 +18,22 @@ std::string field(const std::string& text) {
     for (char c : text) out.append(c == '"' ? 2 : 1, c);
     out += '"';
     return out;
+}
+
+/// A line for the formula within the budget that is nearest; without one, for the nearest of all.
+std::string formulaText(const MaterialPlan& plan) {
+    const auto best = std::ranges::min_element(plan.formulas, {}, [](const PlannedFormula& each) {
+        return std::pair(!each.within, std::max(each.error, each.verified));
+    });
+    if (best == plan.formulas.end()) return "";
+    const std::string command = choice::commandLineOf(best->row);
+    return fmt::format(
+        "  {}: {}, {} bytes{}, error {:.3g}, FLIP {:.3f}\n    {}\n",
+        best->within ? "as a formula" : "no formula keeps to the budget; the nearest",
+        best->row.name, best->row.made.bytes,
+        best->row.cost ? fmt::format(", {} cycles", best->row.cost->cycles) : "", best->verified,
+        best->row.picture.flip.mean,
+        command.empty() ? "no file is needed: " + best->row.made.spec : command);
 }
 
 std::string pairOf(const Choice* choice) {
@@ -59,6 +77,7 @@ std::string planText(const Plan& plan) {
             for (const std::string& text : each.instead) {
                 out += fmt::format("  instead: {}\n", text);
             }
+            out += formulaText(each);
             continue;
         }
         const Accepted& accepted = *each.accepted;
@@ -71,7 +90,9 @@ std::string planText(const Plan& plan) {
                 ? fmt::format(", {:.3g} ns a pair", *accepted.choice.nanoseconds)
                 : "",
             commandOf(accepted.choice, material.name + ".json"));
+        out += formulaText(each);
         out += seen;
+        if (accepted.cost) out += fmt::format("  its shader: {} cycles\n", accepted.cost->cycles);
         out += "  " + summaryOf(accepted.picture) + "\n";
         if (const auto reason = poorReason(1 - accepted.pairs.energyLeft.value, accepted.picture))
             out += fmt::format("  poor beyond the light of this scene: {}\n", *reason);
@@ -85,6 +106,7 @@ std::string planText(const Plan& plan) {
                                each.cheaper.back().bytes, each.cheaper.back().error);
         }
     }
+    if (plan.costs) out += fmt::format("cycles: {}\n", choice::scaleText(*plan.costs));
     return out;
 }
 

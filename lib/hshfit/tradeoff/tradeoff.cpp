@@ -4,9 +4,8 @@
 #include <hshfit/representation/factoring/factoring.h>
 #include <hshfit/representation/forms/pair_evaluators.h>
 #include <hshfit/representation/forms/represented_brdf.h>
-#include <hshfit/representation/split.h>
 #include <hshfit/tradeoff/internal/front.h>
-#include <hshfit/tradeoff/projection_cache.h>
+#include <hshfit/tradeoff/internal/maker.h>
 #include <hshfit/wording.h>
 
 #include <fmt/format.h>
@@ -50,75 +49,6 @@ private:
     const std::function<void(std::size_t, std::size_t)>& show_;
     std::size_t total_;
     std::atomic<std::size_t> done_ = 0;
-};
-
-/// The remainder of the BRDF after one split, and its projections.
-struct Part {
-    Split split;
-    std::unique_ptr<ProjectionCache> cache;
-    std::string failure;  ///< why there is no such split
-};
-
-/// Makes representations of one BRDF in any form of a sweep.
-class Maker {
-public:
-    Maker(const Brdf& brdf, const TradeoffOptions& options, const BrdfOpener& open)
-        : brdf_(brdf), options_(options), open_(open) {}
-
-    void prepare(const std::vector<Form>& forms, const TimeLimit& limit,
-                 const std::function<void()>& done) {
-        for (const auto& [name, list] : bySplit(forms)) {
-            Part& part = parts_[name];
-            try {
-                prepareOne(name, part);
-            } catch (const Error& error) {
-                part.failure = error.what();
-                continue;
-            }
-            part.cache->prepare(list, done, limit);
-        }
-    }
-    static std::size_t projectionsFor(const std::vector<Form>& forms) {
-        std::size_t sum = 0;
-        for (const auto& [name, list] : bySplit(forms))
-            sum += ProjectionCache::projectionsFor(list);
-        return sum;
-    }
-
-    Representation make(const Form& form) const {
-        const Part& part = partOf(form);
-        Representation result = represent(*part.cache, form, part.split.added);
-        result.head.source = brdf_.name();
-        return result;
-    }
-    double projectionSeconds(const Form& form) const { return partOf(form).cache->seconds(form); }
-
-private:
-    static std::map<std::string, std::vector<Form>> bySplit(const std::vector<Form>& forms) {
-        std::map<std::string, std::vector<Form>> lists;
-        for (const Form& form : forms) lists[form.split].push_back(form);
-        return lists;
-    }
-    void prepareOne(const std::string& name, Part& part) const {
-        if (name.empty()) {
-            part.cache = std::make_unique<ProjectionCache>(brdf_, options_.projection);
-            return;
-        }
-        part.split = takeOut(brdf_, name, open_);
-        ProjectionOptions projection = options_.projection;
-        if (projection.tolerance == 0) projection.tolerance = brdf_.defaultTolerance();
-        part.cache = std::make_unique<ProjectionCache>(*part.split.remainder, projection);
-    }
-    const Part& partOf(const Form& form) const {
-        const Part& part = parts_.at(form.split);
-        if (!part.failure.empty()) throw NumericError(part.failure);
-        return part;
-    }
-
-    const Brdf& brdf_;
-    const TradeoffOptions& options_;
-    const BrdfOpener& open_;
-    std::map<std::string, Part> parts_;
 };
 
 std::size_t metricIndex(const std::string& name) {
@@ -296,15 +226,20 @@ std::size_t timedCount(const std::vector<Form>& forms) {
     return keys.size();
 }
 
+/// The forms of either front.
+std::set<std::size_t> onFronts(const Tradeoff& trade) {
+    std::set<std::size_t> forms(trade.byteFront.begin(), trade.byteFront.end());
+    forms.insert(trade.timeFront.begin(), trade.timeFront.end());
+    return forms;
+}
+
 void timeShadersOfFronts(Tradeoff& trade, const Maker& maker, const gpu::DeviceChoice& choice) {
     const gpu::ComputeDevice device(choice);
     MeasuredShaders& measured = trade.shaders.emplace();
     measured.device = device.name();
     measured.software = device.software();
-    std::set<std::size_t> forms(trade.byteFront.begin(), trade.byteFront.end());
-    forms.insert(trade.timeFront.begin(), trade.timeFront.end());
     std::vector<gpu::TimedShader> shaders{gpu::bareShader()};
-    for (const std::size_t k : forms) {
+    for (const std::size_t k : onFronts(trade)) {
         MeasuredShader& form = measured.forms.emplace_back();
         form.form = k;
         try {
@@ -319,6 +254,30 @@ void timeShadersOfFronts(Tradeoff& trade, const Maker& maker, const gpu::DeviceC
     std::size_t next = 1;
     for (MeasuredShader& form : measured.forms)
         if (form.time) form.time = times[next++];
+}
+
+void costFronts(Tradeoff& trade, const Maker& maker, const gpu::ShaderCosts& costs) {
+    trade.costs = {costs.device(), costs.ggx()};
+    for (const std::size_t k : onFronts(trade)) {
+        try {
+            trade.forms[k].cost = costs.of(gpu::timedShader(maker.make(trade.forms[k].form)));
+        } catch (const UsageError&) {
+            trade.forms[k].cost.reset();  // a form without a shader of its own
+        }
+    }
+}
+
+void measureFormulas(Tradeoff& trade, const Brdf& brdf, const PairReference& reference,
+                     const TradeoffOptions& options, const gpu::ShaderCosts* costs) {
+    if (options.formulas.empty()) return;
+    choice::MeasuredRows measured =
+        choice::measureRows(choice::RowMeasurement(brdf, {}, costs), options.formulas);
+    for (choice::Row& row : measured.rows) {
+        auto errors = reference.errorsOf(row.made.brdf ? *row.made.brdf : brdf);
+        const PairSummary summary = summaryOf(reference.pairs(), errors);
+        trade.formulas.push_back({std::move(row), std::move(errors.all), summary});
+    }
+    for (const choice::LeftOut& line : measured.leftOut) leaveOut(trade, line.reason, line.name);
 }
 
 void findFronts(Tradeoff& trade, const TradeoffOptions& options) {
@@ -340,9 +299,7 @@ void findFronts(Tradeoff& trade, const TradeoffOptions& options) {
 /// The picture errors of the forms on the fronts; those of all would take longer than the rest.
 void drawFronts(Tradeoff& trade, const Maker& maker, const PictureReference& pictures,
                 const BrdfOpener& open) {
-    std::set<std::size_t> forms(trade.byteFront.begin(), trade.byteFront.end());
-    forms.insert(trade.timeFront.begin(), trade.timeFront.end());
-    for (const std::size_t k : forms) {
+    for (const std::size_t k : onFronts(trade)) {
         if (trade.forms[k].picture) continue;
         trade.forms[k].picture =
             pictures.errorOf(*reconstruct(maker.make(trade.forms[k].form), open));
@@ -387,9 +344,9 @@ double Tradeoff::bandErrorOf(std::size_t form, std::size_t band) const {
     return weighed(forms[form].bands[band], metric);
 }
 
-std::optional<double> Tradeoff::uncertaintyOf(std::size_t form) const {
+std::optional<double> Tradeoff::uncertaintyOf(const PairErrors& errors) const {
     if (metric == pictureMetric) return std::nullopt;
-    return forms[form].errors.uncertainty[metricIndex(metric)];
+    return errors.uncertainty[metricIndex(metric)];
 }
 
 std::optional<std::string> Tradeoff::poorReasonOf(std::size_t form) const {
@@ -403,6 +360,12 @@ std::optional<double> Tradeoff::shaderTimeOf(std::size_t form) const {
     const auto row = std::ranges::find(shaders->forms, form, &MeasuredShader::form);
     if (row == shaders->forms.end() || !row->time) return {};
     return row->time->median;
+}
+
+double Tradeoff::formulaErrorOf(std::size_t formula) const {
+    const MeasuredFormula& measured = formulas[formula];
+    return metric == pictureMetric ? measured.row.picture.flip.mean
+                                   : weighed(measured.errors, metric);
 }
 
 double Tradeoff::waveletErrorOf(std::size_t form) const {
@@ -421,8 +384,10 @@ std::vector<std::size_t> Tradeoff::waveletFront() const {
 Tradeoff measure(const Brdf& brdf, PairSample pairs, const TradeoffOptions& options,
                  const BrdfOpener& open) {
     const std::vector<Form> forms = formsFor(brdf, options);
-    // A device that is none fails before the long work.
+    // A device or a compiler that is none fails before the long work.
     if (options.gpu) gpu::ComputeDevice{*options.gpu};
+    std::optional<gpu::ShaderCosts> costs;
+    if (options.costs) costs.emplace();
     Steps steps(options, Maker::projectionsFor(forms) + forms.size() +
                              (options.timing ? timedCount(forms) : 0));
     const PairReference reference(brdf, std::move(pairs));
@@ -437,13 +402,13 @@ Tradeoff measure(const Brdf& brdf, PairSample pairs, const TradeoffOptions& opti
     Finds finds(options, trade.brdf);
     if (options.found) {
         const Form& form = firstForm(forms);
-        Maker maker(brdf, options, open);
+        Maker maker(brdf, options.projection, open);
         maker.prepare({form}, {}, [] {});
         finds.add(measureOne(form, maker, reference, pictures, options, open));
     }
     boundByRank(trade, brdf, options.sweep.quantity);
     const TimeLimit limit = options.limit.share(options.timing ? 4.0 / 3 : 1);
-    Maker maker(brdf, options, open);
+    Maker maker(brdf, options.projection, open);
     maker.prepare(forms, limit.share(4), [&] { steps.done(); });
 
     std::vector<Outcome> outcomes(forms.size());
@@ -482,6 +447,9 @@ Tradeoff measure(const Brdf& brdf, PairSample pairs, const TradeoffOptions& opti
     if (options.timing) timeForms(trade, maker, open, options.limit, steps);
     findFronts(trade, options);
     drawFronts(trade, maker, pictures, open);
+    if (!options.limit.isOver())
+        measureFormulas(trade, brdf, reference, options, costs ? &*costs : nullptr);
+    if (costs) costFronts(trade, maker, *costs);
     if (options.gpu) timeShadersOfFronts(trade, maker, *options.gpu);
     brdf.checkIntact();
     return trade;

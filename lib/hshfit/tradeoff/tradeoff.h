@@ -1,6 +1,7 @@
 #pragma once
 
 #include <hshfit/accuracy/pair_errors.h>
+#include <hshfit/choice/rows.h>
 #include <hshfit/error.h>
 #include <hshfit/gpu/timing/shader_time.h>
 #include <hshfit/pictures/picture_error.h>
@@ -30,6 +31,9 @@ struct TradeoffOptions {
     bool timing = true;
     /// Time the shaders of the fronts' forms on this device; takes `timing`.
     std::optional<gpu::DeviceChoice> gpu = {};
+    bool costs = false;  ///< state what the fronts' shaders cost on an AMD GPU (gpu::ShaderCosts)
+    /// Measured beside the forms: what the material can be without coefficients.
+    std::vector<choice::Candidate> formulas = {};
     bool wavelets = false;  ///< measure the best terms of spherical wavelets too
     bool byTime = false;    ///< the choice is the knee over time instead of that over bytes
     ProjectionOptions projection = {};
@@ -53,6 +57,14 @@ struct Measured {
     std::vector<PairErrors> bands;  ///< by elevation of wo, see bandEdges
     PairSummary summary;
     std::optional<PictureError> picture = {};  ///< of forms on a front, or all with that metric
+    std::optional<gpu::ShaderCost> cost = {};  ///< of forms on a front, if asked for
+};
+
+/// A material that is no coefficient file, at the same pairs.
+struct MeasuredFormula {
+    choice::Row row;
+    PairErrors errors;
+    PairSummary summary;
 };
 
 /// The cost of a form; wall-clock times of this machine.
@@ -106,6 +118,8 @@ struct Tradeoff {
     std::vector<double> sliceErrors = {};
     std::string sliceOutgoing = {};
     std::vector<MeasuredWavelets> wavelets = {};  ///< if asked for
+    std::vector<MeasuredFormula> formulas = {};   ///< by rising bytes
+    std::optional<choice::CostScale> costs = {};  ///< if asked for
 
     std::vector<MeasuredTime> times = {};     ///< like `forms`; empty without timing
     std::vector<std::size_t> timeFront = {};  ///< by rising nanoseconds a pair, batch of 4096
@@ -121,7 +135,10 @@ struct Tradeoff {
     std::optional<std::string> poorReasonOf(std::size_t form) const;
     /// The error in one band; NaN likewise, and by the metric picture.
     double bandErrorOf(std::size_t form, std::size_t band) const;
-    std::optional<double> uncertaintyOf(std::size_t form) const;
+    /// The standard error of an error; none of the metric picture.
+    std::optional<double> uncertaintyOf(const PairErrors& errors) const;
+    /// The error of one of `formulas`; NaN where it does not exist.
+    double formulaErrorOf(std::size_t formula) const;
     /// The error of a form of `wavelets`.
     double waveletErrorOf(std::size_t form) const;
     /// Those that no other wavelet form beats, by rising bytes.
@@ -131,7 +148,7 @@ struct Tradeoff {
 /// Measures every form of the sweep against `brdf` at the pairs. Errors on all threads, times
 /// afterwards on one. A form that fails is left out with its reason.
 /// Throws UsageError for an unknown metric and for an empty sweep; NumericError where no form is
-/// left.
+/// left, and for costs without a compiler.
 Tradeoff measure(const Brdf& brdf, PairSample pairs, const TradeoffOptions& options,
                  const BrdfOpener& open);
 

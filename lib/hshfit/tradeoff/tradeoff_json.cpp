@@ -1,3 +1,4 @@
+#include <hshfit/choice/row_json.h>
 #include <hshfit/files/json_fields.h>
 #include <hshfit/pages/pair_summary_json.h>
 #include <hshfit/pages/picture_error_json.h>
@@ -43,7 +44,7 @@ Json formJson(const Tradeoff& trade, std::size_t k) {
                  {"entropy_bytes", form.entropyBytes},
                  {"numbers", form.numbers},
                  {"error", finiteOrNull(trade.errorOf(k))},
-                 {"uncertainty", finiteOrNull(trade.uncertaintyOf(k))},
+                 {"uncertainty", finiteOrNull(trade.uncertaintyOf(trade.forms[k].errors))},
                  {"band_errors", bands},
                  {"metrics", metricsJson(form.errors)},
                  {"pairs", pairSummaryJson(form.summary)},
@@ -60,8 +61,22 @@ Json frontJson(const Tradeoff& trade) {
         Json bands = Json::array();
         for (const PairErrors& band : trade.forms[k].bands) bands.push_back(metricsJson(band));
         front.push_back({{"form", k}, {"command", commandOf(trade, k)}, {"bands", bands}});
+        if (const auto& cost = trade.forms[k].cost) front.back()["cost"] = choice::costJson(*cost);
     }
     return front;
+}
+
+Json formulasJson(const Tradeoff& trade) {
+    Json list = Json::array();
+    for (std::size_t k = 0; k < trade.formulas.size(); ++k) {
+        const MeasuredFormula& formula = trade.formulas[k];
+        Json row = choice::rowJson(formula.row);
+        row["error"] = finiteOrNull(trade.formulaErrorOf(k));
+        row["metrics"] = metricsJson(formula.errors);
+        if (formula.row.cost) row["cost"] = choice::costJson(*formula.row.cost);
+        list.push_back(row);
+    }
+    return list;
 }
 
 Json leftOutJson(const Tradeoff& trade) {
@@ -104,6 +119,8 @@ Json tradeJson(const Tradeoff& trade) {
                  {"left_out", leftOutJson(trade)},
                  {"beyond_max_bytes", trade.beyondBytes}};
     if (!trade.wavelets.empty()) json["wavelets"] = waveletsJson(trade);
+    if (!trade.formulas.empty()) json["formulas"] = formulasJson(trade);
+    if (trade.costs) json["costs"] = choice::scaleJson(*trade.costs);
     return json;
 }
 
@@ -142,6 +159,7 @@ Json tradeTimingJson(const Tradeoff& trade) {
     for (const std::size_t k : trade.timeFront) {
         front.push_back({{"form", k}, {"command", commandOf(trade, k)}});
         addPicture(trade, k, front.back());
+        if (const auto& cost = trade.forms[k].cost) front.back()["cost"] = choice::costJson(*cost);
     }
     Json json = {{"brdf", trade.brdf},
                  {"front", front},

@@ -1,3 +1,4 @@
+#include <hshfit/choice/row_text.h>
 #include <hshfit/files/template_text.h>
 #include <hshfit/pages/page_figures.h>
 #include <hshfit/pages/report_files.h>
@@ -58,10 +59,11 @@ data frontRow(const Tradeoff& trade, std::size_t k) {
     row.set("class", trade.byteKnee == k ? "knee" : "");
     row.set("bytes", std::to_string(form.bytes));
     row.set("entropy", std::to_string(form.entropyBytes));
-    row.set(
-        "error",
-        fmt::format("{} ± {}", numberText(trade.errorOf(k)),
-                    trade.uncertaintyOf(k) ? fmt::format("{:.1g}", *trade.uncertaintyOf(k)) : "–"));
+    row.set("error",
+            fmt::format("{} ± {}", numberText(trade.errorOf(k)),
+                        trade.uncertaintyOf(trade.forms[k].errors)
+                            ? fmt::format("{:.1g}", *trade.uncertaintyOf(trade.forms[k].errors))
+                            : "–"));
     std::vector<std::string> bands, metrics;
     for (std::size_t b = 0; b < bandCount; ++b)
         bands.push_back(numberText(trade.bandErrorOf(k, b)));
@@ -72,6 +74,7 @@ data frontRow(const Tradeoff& trade, std::size_t k) {
     row.set("bands", textList(bands));
     row.set("metrics", textList(metrics));
     row.set("command", commandOf(trade, k));
+    if (trade.costs) row.set("cycles", choice::cyclesText(form.cost));
     if (!form.steps.empty()) row.set("steps", stepsText(form));
     return row;
 }
@@ -121,6 +124,26 @@ data waveletTable(const Tradeoff& trade) {
     return table;
 }
 
+/// Materials that are no coefficient files.
+data formulaTableOf(const Tradeoff& trade) {
+    data rows{data::type::list};
+    for (std::size_t k = 0; k < trade.formulas.size(); ++k) {
+        const choice::Row& formula = trade.formulas[k].row;
+        data row("name", formula.name);
+        row.set("bytes", std::to_string(formula.made.bytes));
+        row.set("error", numberText(trade.formulaErrorOf(k)));
+        row.set("flip", fmt::format("{:.3f}", formula.picture.flip.mean));
+        row.set("lost", formula.lost);
+        if (trade.costs) row.set("cycles", choice::cyclesText(formula.cost));
+        const std::string command = choice::commandLineOf(formula);
+        row.set("command", command.empty() ? withoutFolders(formula.made.spec) : command);
+        rows.push_back(row);
+    }
+    data table;
+    table.set("rows", rows);
+    return table;
+}
+
 data sizeEntry(const Tradeoff& trade) {
     data entry;
     entry.set("channels", fmt::format("{}", fmt::join(trade.channels.names(), ", ")));
@@ -144,6 +167,8 @@ data sizeEntry(const Tradeoff& trade) {
     entry.set("front", front);
     entry.set("budgets", budgetRows(trade));
     if (!trade.wavelets.empty()) entry.set("wavelets", waveletTable(trade));
+    if (!trade.formulas.empty()) entry.set("formulas", formulaTableOf(trade));
+    if (trade.costs) entry.set("scale", choice::scaleText(*trade.costs));
     entry.set("anyLeftOut", !trade.leftOut.empty());
     entry.set("leftOut", leftOutRows(trade));
     return entry;

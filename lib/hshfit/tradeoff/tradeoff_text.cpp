@@ -1,3 +1,4 @@
+#include <hshfit/choice/row_text.h>
 #include <hshfit/tradeoff/tradeoff_files.h>
 #include <hshfit/wording.h>
 
@@ -67,33 +68,80 @@ std::string waveletRows(std::span<const Tradeoff> trades) {
     return csv;
 }
 
-std::string frontTable(const Tradeoff& trade, const std::vector<std::size_t>& front) {
-    const bool timed = !trade.times.empty();
-    const auto relative = [](double error, double value) {
-        return value > 0 ? fmt::format("{:.0f}%", 100 * error / value) : std::string("-");
+/// A row of the tables.
+struct Line {
+    std::size_t bytes;
+    double error;
+    std::optional<double> uncertainty;
+    const PairSummary& summary;
+    const PictureError& picture;
+    bool poor;
+    std::string nanoseconds, gpu, name;
+    std::optional<gpu::ShaderCost> cost;
+};
+
+std::string headingText(const Tradeoff& trade, const char* names) {
+    return fmt::format("  {:>9} {:>11} {:>5} {:>9} {:>9} {:>5} {:>6} {:>6} {:>4} {:>9}{}{}  {}\n",
+                       "bytes", "error", "+-", zoneNames[0], zoneNames[1], "FLIP", "dip", "peak",
+                       "", trade.times.empty() ? "" : "ns",
+                       trade.shaders ? fmt::format(" {:>10}", "gpu ns/Mpx") : "",
+                       trade.costs ? fmt::format(" {:>6}", "cycles") : "", names);
+}
+
+std::string lineText(const Tradeoff& trade, const Line& line) {
+    const auto relative = [&] {
+        if (!(line.error > 0) || !line.uncertainty) return std::string("-");
+        return fmt::format("{:.0f}%", 100 * *line.uncertainty / line.error);
     };
-    std::string text =
-        fmt::format("  {:>9} {:>11} {:>5} {:>9} {:>9} {:>5} {:>6} {:>6} {:>4} {:>9}{}  options\n",
-                    "bytes", "error", "+-", zoneNames[0], zoneNames[1], "FLIP", "dip", "peak", "",
-                    timed ? "ns" : "", trade.shaders ? fmt::format(" {:>10}", "gpu ns/Mpx") : "");
+    return fmt::format(
+        "  {:>9} {:>11.4g} {:>5} {:>9.3g} {:>9.3g} {:>5.3f} {:>6} {:>6} {:>4} {:>9}{}{}  {}\n",
+        line.bytes, line.error, relative(), line.summary.zones[0].value,
+        line.summary.zones[1].value, line.picture.flip.mean, shareText(line.picture.dip),
+        shareText(line.picture.peak), line.poor ? "poor" : "", line.nanoseconds,
+        trade.shaders ? fmt::format(" {:>10}", line.gpu) : "",
+        trade.costs ? fmt::format(" {:>6}", choice::cyclesText(line.cost)) : "", line.name);
+}
+
+std::string frontTable(const Tradeoff& trade, const std::vector<std::size_t>& front) {
+    std::string text = headingText(trade, "options");
     for (const std::size_t k : front) {
-        const std::string ns =
-            timed ? fmt::format("{:.1f}", trade.times[k].evaluation.batch.median) : "";
-        std::string gpu;
-        if (trade.shaders) {
-            const auto time = trade.shaderTimeOf(k);
-            gpu = fmt::format(" {:>10}", time ? fmt::format("{:.3g}", *time) : "–");
-        }
-        const PairSummary& summary = trade.forms[k].summary;
-        const PictureError& picture = *trade.forms[k].picture;
-        const double error = trade.errorOf(k);
-        text += fmt::format(
-            "  {:>9} {:>11.4g} {:>5} {:>9.3g} {:>9.3g} {:>5.3f} {:>6} {:>6} {:>4} {:>9}{}  {}\n",
-            trade.forms[k].bytes, error,
-            relative(trade.uncertaintyOf(k).value_or(std::nan("")), error), summary.zones[0].value,
-            summary.zones[1].value, picture.flip.mean, shareText(picture.dip),
-            shareText(picture.peak), trade.poorReasonOf(k) ? "poor" : "", ns, gpu,
-            trade.forms[k].options);
+        const Measured& form = trade.forms[k];
+        const std::optional<double> time = trade.shaderTimeOf(k);
+        text += lineText(
+            trade,
+            {.bytes = form.bytes,
+             .error = trade.errorOf(k),
+             .uncertainty = trade.uncertaintyOf(form.errors),
+             .summary = form.summary,
+             .picture = *form.picture,
+             .poor = trade.poorReasonOf(k).has_value(),
+             .nanoseconds = trade.times.empty()
+                                ? ""
+                                : fmt::format("{:.1f}", trade.times[k].evaluation.batch.median),
+             .gpu = time ? fmt::format("{:.3g}", *time) : "–",
+             .name = form.options,
+             .cost = form.cost});
+    }
+    return text;
+}
+
+/// Materials that are no coefficient files, with the commands that write them.
+std::string formulaTable(const Tradeoff& trade) {
+    if (trade.formulas.empty()) return "";
+    std::string text = headingText(trade, "formulas, for comparison");
+    for (std::size_t k = 0; k < trade.formulas.size(); ++k) {
+        const MeasuredFormula& formula = trade.formulas[k];
+        const std::string command = choice::commandLineOf(formula.row);
+        text += lineText(trade, {.bytes = formula.row.made.bytes,
+                                 .error = trade.formulaErrorOf(k),
+                                 .uncertainty = trade.uncertaintyOf(formula.errors),
+                                 .summary = formula.summary,
+                                 .picture = formula.row.picture,
+                                 .poor = formula.row.poor.has_value(),
+                                 .nanoseconds = "",
+                                 .gpu = "–",
+                                 .name = formula.row.name + (command.empty() ? "" : ": " + command),
+                                 .cost = formula.row.cost});
     }
     return text;
 }
@@ -174,7 +222,8 @@ std::string formsCsv(std::span<const Tradeoff> trades) {
         for (std::size_t k = 0; k < trade.forms.size(); ++k) {
             const Measured& form = trade.forms[k];
             csv += fmt::format("{},{},{},{},{}", t + 1, seriesOf(form.form), form.bytes,
-                               cell(trade.errorOf(k)), cell(trade.uncertaintyOf(k)));
+                               cell(trade.errorOf(k)),
+                               cell(trade.uncertaintyOf(trade.forms[k].errors)));
             for (std::size_t b = 0; b < bandCount; ++b)
                 csv += fmt::format(",{}", cell(trade.bandErrorOf(k, b)));
             csv += fmt::format(",{},{}", form.entropyBytes, form.numbers);
@@ -244,6 +293,8 @@ std::string tradeoffText(const Tradeoff& trade, bool byTime) {
     std::string text = fmt::format("{}: {} forms, {} pairs, error: {}\n", trade.brdf,
                                    trade.forms.size(), trade.pairs, metricText(trade.metric));
     text += frontTable(trade, byTime ? trade.timeFront : trade.byteFront);
+    text += formulaTable(trade);
+    if (trade.costs) text += fmt::format("  cycles: {}\n", choice::scaleText(*trade.costs));
     if (trade.shaders) text += shadersText(trade);
     for (const LeftOut& line : trade.leftOut) {
         text += fmt::format("  left out: {} ({}): {}\n", line.forms, line.example, line.reason);

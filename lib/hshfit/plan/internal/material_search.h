@@ -15,8 +15,9 @@ namespace hshfit::plan {
 /// The search for the cheapest form of one material.
 class MaterialSearch {
 public:
+    /// Costs are stated where there are `costs`.
     MaterialSearch(const Scene& scene, const Material& material, const BrdfOpener& open,
-                   const PlanOptions& options);
+                   const PlanOptions& options, const gpu::ShaderCosts* costs);
     ~MaterialSearch();
 
     MaterialPlan run();
@@ -74,10 +75,13 @@ private:
     /// The least truncation error of any linear form.
     double leastFloor() const;
     void refuse();
+    void measureFormulas();
+    std::optional<gpu::ShaderCost> costOf(const Representation& representation) const;
 
     const Scene& scene_;
     const BrdfOpener& open_;
     const PlanOptions& options_;
+    const gpu::ShaderCosts* costs_;
     MaterialPlan plan_;
     std::vector<Version> versions_;
     std::unique_ptr<MaterialLight> light_;
