@@ -42,9 +42,9 @@ struct StandardMaterial {
     double seconds;  ///< Candidate::seconds, of tables
 };
 constexpr StandardMaterial standardMaterials[] = {
-    {"gltf", "glTF material", "gltf", 20},
-    {"openpbr", "OpenPBR Surface", "materialx", 40},
-    {"usd", "UsdPreviewSurface", "usd", 60},
+    {"gltf", "glTF material", "gltf", 4},
+    {"openpbr", "OpenPBR Surface", "materialx", 12},
+    {"usd", "UsdPreviewSurface", "usd", 16},
 };
 
 constexpr CandidateKind kindTable[] = {

@@ -64,9 +64,9 @@ std::string formName(const Form& form) {
     return fmt::format("{} of order {}{}", form.basis, form.order, where) + precision;
 }
 
-/// Candidate::seconds: fits of the halfway form grow with its terms.
+/// Candidate::seconds: fits of the halfway form grow with its terms, and two precisions share one.
 double secondsOf(const Form& form) {
-    return form.kind == Kind::halfway ? 0.1 * form.halfway.half * form.halfway.half : 3;
+    return form.kind == Kind::halfway ? 0.05 * form.halfway.half * form.halfway.half : 3;
 }
 
 /// The forms that are tried: of the halfway form few functions and many, in half and in bytes;

@@ -2,9 +2,9 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
-#include <hshfit/plan/internal/timing.h>
 #include <hshfit/representation/forms/pair_evaluators.h>
 #include <hshfit/representation/forms/represented_brdf.h>
+#include <hshfit/tradeoff/timing.h>
 
 #include <fmt/format.h>
 
@@ -30,6 +30,14 @@ constexpr std::size_t mostTimed = 12;
 
 std::string keyOf(const Rung& rung) {
     return fmt::format("{} {}", rung.source, optionsOf(rung.form));
+}
+
+/// For a pair of directions in a batch, on one thread.
+double nanosecondsPerPair(const Representation& representation, const BrdfOpener& open) {
+    const auto evaluator = pairEvaluator(representation, open);
+    const PairEvaluator* const one = evaluator.get();
+    const auto times = tradeoff::timePairs({&one, 1}, representation.head.channels.count());
+    return times.front().batch.median;
 }
 
 std::vector<Radiance> withAdded(std::vector<Radiance> radiance,
