@@ -156,6 +156,13 @@ std::string withKeywords(std::string_view help) {
     return out + text;
 }
 
+/// The words of a flag that has two on the command line.
+std::string flagWords(const jobs::BoundOption& option) {
+    if (!std::holds_alternative<bool*>(option.value) || !option.row->values.words) return {};
+    const std::vector<jobs::Word> words = option.row->values.words();
+    return fmt::format("True for {}, False for {}; ", words[0].text, words[1].text);
+}
+
 }  // namespace
 
 Options joined(std::initializer_list<Options> parts) {
@@ -184,7 +191,14 @@ void Keywords::set(const Options& options) {
         if (!left_.contains(keyword)) continue;
         const py::object given = left_.attr("pop")(keyword);
         std::visit(Setter{*option.row, keyword, given}, option.value);
+        set_.push_back(option.row);
     }
+}
+
+const OptionRow* Keywords::misplaced(unsigned inputs) const {
+    const auto found = std::ranges::find_if(
+        set_, [&](const OptionRow* row) { return (row->inputs & inputs) == 0; });
+    return found == set_.end() ? nullptr : *found;
 }
 
 py::object Keywords::take(const char* name) {
@@ -218,7 +232,8 @@ std::string docstring(const OptionFunction& function) {
         const std::string keyword = keywordOf(*option.row);
         signature +=
             fmt::format(", {}: {}", keyword, std::visit(Stater{*option.row}, option.value));
-        lines += fmt::format("\n{:<11} {}", keyword, withKeywords(option.row->help));
+        lines += fmt::format("\n{:<11} {}{}", keyword, flagWords(option),
+                             withKeywords(option.row->help));
     }
     for (const auto& [name, type] : function.others)
         signature += fmt::format(", {}: {} = None", name, type);
