@@ -56,12 +56,14 @@ struct Setter {
         *value = textOf(given);
         if (row.values.files != jobs::Files::none && value->empty() && !given.is_none())
             throw UsageError(fmt::format("{}: an empty path; valid: None or a name", keyword));
+        requireKnown(*value);
+    }
+    void requireKnown(const std::string& word) const {
         if (!row.values.complete) return;
         std::vector<std::string> known;
-        for (const jobs::Word& word : row.values.words()) known.push_back(word.text);
-        for (const std::string& word : known)
-            if (word == *value) return;
-        throw spelling::unknown(keyword, *value, known);
+        for (const jobs::Word& each : row.values.words()) known.push_back(each.text);
+        if (std::ranges::find(known, word) == known.end())
+            throw spelling::unknown(keyword, word, known);
     }
     void operator()(std::vector<std::string>* value) const {
         value->clear();
@@ -84,7 +86,11 @@ struct Setter {
         *value = cast<std::optional<Number>>();
         if (*value && row.range) requireWithin(keyword.c_str(), **value, *row.range);
     }
-    void operator()(const jobs::Spelled& value) const { value.set(value.at, textOf(given)); }
+    void operator()(const jobs::Spelled& value) const {
+        const std::string word = textOf(given);
+        if (!word.empty()) requireKnown(word);
+        value.set(value.at, word);
+    }
     template <class Value>
     void operator()(Value* value) const {
         const auto asked = cast<Value>();
