@@ -18,6 +18,7 @@ OptionTables exportRows();
 OptionTables fitRows();
 OptionTables gaussianRows();
 OptionTables irradianceRows();
+OptionTables libraryRows();
 OptionTables lightRows();
 OptionTables ltcRows();
 OptionTables planRows();
@@ -25,6 +26,7 @@ OptionTables projectRows();
 OptionTables reportRows();
 OptionTables sampleRows();
 OptionTables stressRows();
+OptionTables svbrdfRows();
 OptionTables tradeoffRows();
 OptionTables transferRows();
 

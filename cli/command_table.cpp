@@ -251,7 +251,8 @@ constexpr Command table[] = {
             .help = "Textures of materials: parameter maps as coefficient textures with mip levels",
             .file = "svbrdf.cpp",
             .example = "hshfit svbrdf examples/maps/coin.json -o coin --form low-rank",
-            .add = addSvbrdf}),
+            .add = addSvbrdf,
+            .options = svbrdfRows}),
     inWing(
         Wing::library,
         {.name = "library",
@@ -261,7 +262,8 @@ constexpr Command table[] = {
          .file = "library.cpp",
          .example = "hshfit library learn ggx:alpha=.2,F0=.9/.6/.3 ggx:alpha=.3,F0=.04 "
                     "lambert:kd=.3/.2/.1 -o studio.library",
-         .add = addLibrary}),
+         .add = addLibrary,
+         .options = libraryRows}),
     {.name = "help",
      .group = program,
      .help = "Commands by group and topics; the options of one command; one topic",

@@ -30,7 +30,9 @@ public:
         : command_(command), row_(row), group_(group) {}
 
     void operator()(bool* value) const {
-        if (*value)
+        if (row_.values.words)
+            addWords(value);
+        else if (*value)
             addFlag(nameWithout(row_), row_.without, [value] { *value = false; });
         else
             addFlag(nameOf(row_), row_.help, [value] { *value = true; });
@@ -71,6 +73,14 @@ public:
     }
 
 private:
+    /// Two words, the first for true.
+    void addWords(bool* value) const {
+        const std::vector<jobs::Word> words = row_.values.words();
+        CLI::Option* option = command_.add_option_function<std::string>(
+            nameOf(row_),
+            [value, yes = words[0].text](const std::string& word) { *value = word == yes; });
+        added(option).default_str(words[*value ? 0 : 1].text);
+    }
     CLI::Option& addFlag(const std::string& name, std::string_view help,
                          std::function<void()> set) const {
         CLI::Option& flag = added(command_.add_flag_callback(name, std::move(set)));

@@ -1,14 +1,14 @@
 #include "command.h"
+#include "command_rows.h"
 #include "documents.h"
+#include "job_options.h"
 
 #include <hshfit/error.h>
 #include <hshfit/material_library/library_file.h>
 #include <hshfit/pages/picture_error_json.h>
 #include <hshfit/pictures/poor.h>
 
-#include <jobs/library/library_export.h>
-#include <jobs/library/material_library.h>
-#include <jobs/library/material_samples.h>
+#include <jobs/library/library_options.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -24,30 +24,10 @@ using Json = nlohmann::ordered_json;
 namespace ml = material_library;
 
 struct LibraryArguments {
-    std::string action, output, instrument = "free";
+    std::string action, output;
     std::vector<std::string> inputs;
-    std::string components = "auto";
-    std::size_t count = 10;
-    bool learnGiven = false, final = false;
-    jobs::EncodeOptions encode;  ///< with the limits that are given
-    jobs::LearnLibraryOptions learn;
-    jobs::ReconstructOptions reconstruct;
-    jobs::LibraryExportOptions exporting;
-
-    std::size_t componentCount() const {
-        if (components == "auto") return 0;
-        std::size_t used = 0;
-        int number = 0;
-        try {
-            number = std::stoi(components, &used);
-        } catch (const std::exception&) {
-            used = 0;
-        }
-        if (used != components.size() || number < 1 || number > 512)
-            throw UsageError(fmt::format(
-                "--components '{}': expected auto or a number from 1 to 512", components));
-        return static_cast<std::size_t>(number);
-    }
+    bool learnGiven = false;  ///< of merge: an option that learning takes
+    jobs::LibraryOptions options;
 };
 
 Json errorJson(const ml::FormError& error) {
@@ -139,31 +119,31 @@ void printLearned(const jobs::LearnedLibrary& learned, const LibraryArguments& a
 }
 
 void runLearn(const LibraryArguments& arguments, const Globals& globals) {
-    jobs::LearnLibraryOptions options = arguments.learn;
-    options.learn.components = arguments.componentCount();
-    const ml::Limits usual;
-    options.limits = {arguments.encode.log.value_or(usual.log),
-                      arguments.encode.maximum.value_or(usual.maximum),
-                      arguments.encode.flip.value_or(usual.flip)};
-    options.final = arguments.final;
+    jobs::LearnLibraryOptions options = arguments.options.learn;
+    options.learn.components = arguments.options.componentCount();
+    const jobs::EncodeOptions& given = arguments.options.encode;
+    options.limits = {given.log.value_or(options.limits.log),
+                      given.maximum.value_or(options.limits.maximum),
+                      given.flip.value_or(options.limits.flip)};
     printLearned(
         jobs::learnLibrary(arguments.inputs, arguments.output, options, listenerFor(globals)),
         arguments, globals);
 }
 
 void runMerge(const LibraryArguments& arguments, const Globals& globals) {
-    jobs::MergeLibraryOptions options{.final = arguments.final};
+    const jobs::LearnLibraryOptions& given = arguments.options.learn;
+    jobs::MergeLibraryOptions options{.final = given.final};
     if (arguments.learnGiven) {
-        options.learn = arguments.learn.learn;
-        options.learn->components = arguments.componentCount();
+        options.learn = given.learn;
+        options.learn->components = arguments.options.componentCount();
     }
     printLearned(jobs::mergeLibraries(arguments.inputs, arguments.output, options), arguments,
                  globals);
 }
 
 void runEncode(const LibraryArguments& arguments, const Globals& globals) {
-    jobs::EncodeOptions options = arguments.encode;
-    options.components = arguments.componentCount();
+    jobs::EncodeOptions options = arguments.options.encode;
+    options.components = arguments.options.componentCount();
     const jobs::EncodedMaterial encoded = jobs::encodeMaterial(
         arguments.inputs[0], arguments.inputs[1], arguments.output, options, listenerFor(globals));
     const std::optional<std::string> poor = poorReason({}, encoded.picture);
@@ -192,7 +172,7 @@ void runDecode(const LibraryArguments& arguments, const Globals& globals) {
 
 void runMix(const LibraryArguments& arguments, const Globals& globals) {
     const std::vector<jobs::MixedMaterial> path =
-        jobs::mixMaterials(arguments.inputs, arguments.output, arguments.count);
+        jobs::mixMaterials(arguments.inputs, arguments.output, arguments.options.count);
     Json rows = Json::array();
     std::string text;
     for (const jobs::MixedMaterial& one : path) {
@@ -235,7 +215,7 @@ void runList(const LibraryArguments& arguments, const Globals& globals) {
 
 void runSearch(const LibraryArguments& arguments, const Globals& globals) {
     const std::vector<jobs::FoundMaterial> found = jobs::searchLibrary(
-        arguments.inputs[0], arguments.inputs[1], arguments.count, listenerFor(globals));
+        arguments.inputs[0], arguments.inputs[1], arguments.options.count, listenerFor(globals));
     Json rows = Json::array();
     std::string text = "material                         FLIP    CIEDE2000  ln(f + 0.001)\n";
     for (const jobs::FoundMaterial& one : found) {
@@ -253,7 +233,7 @@ void runSearch(const LibraryArguments& arguments, const Globals& globals) {
 
 void runReconstruct(const LibraryArguments& arguments, const Globals& globals) {
     const jobs::ReconstructedMaterial done = jobs::reconstructMaterial(
-        arguments.inputs[0], arguments.output, arguments.reconstruct, listenerFor(globals));
+        arguments.inputs[0], arguments.output, arguments.options.reconstruct, listenerFor(globals));
     const ml::Agreement& agreement = done.agreement;
     const double each = agreement.chiSquare / static_cast<double>(agreement.degreesOfFreedom);
     if (!agreement.known)
@@ -270,7 +250,7 @@ void runReconstruct(const LibraryArguments& arguments, const Globals& globals) {
         document["usual"] = agreement.usual;
         document["known"] = agreement.known;
         document["expected_error"] = done.expectedError;
-        if (!arguments.reconstruct.bandsTo.empty()) document["bands"] = done.bands.size();
+        if (!arguments.options.reconstruct.bandsTo.empty()) document["bands"] = done.bands.size();
         return printJson(document);
     }
     printText(
@@ -281,12 +261,13 @@ void runReconstruct(const LibraryArguments& arguments, const Globals& globals) {
 }
 
 void runNext(const LibraryArguments& arguments, const Globals& globals) {
-    const std::vector<ml::NextPair> pairs =
-        jobs::nextPairs(arguments.inputs.empty() ? "" : arguments.inputs[0], arguments.output,
-                        {.library = arguments.reconstruct.library,
-                         .sigma = arguments.reconstruct.sigma,
-                         .count = arguments.count,
-                         .inPlane = arguments.instrument == "in-plane"});
+    const jobs::LibraryOptions& given = arguments.options;
+    jobs::NextPairsOptions options = given.next;
+    options.library = given.reconstruct.library;
+    options.sigma = given.reconstruct.sigma;
+    options.count = given.count;
+    const std::vector<ml::NextPair> pairs = jobs::nextPairs(
+        arguments.inputs.empty() ? "" : arguments.inputs[0], arguments.output, options);
     Json rows = Json::array();
     std::string text = " wi              wo              expected error\n";
     for (const ml::NextPair& next : pairs) {
@@ -303,7 +284,7 @@ void runNext(const LibraryArguments& arguments, const Globals& globals) {
 }
 
 void runExport(const LibraryArguments& arguments, const Globals& globals) {
-    jobs::LibraryExportOptions options = arguments.exporting;
+    jobs::LibraryExportOptions options = arguments.options.exporting;
     options.force = globals.force;
     const jobs::ExportedLibrary exported =
         jobs::exportLibrary(arguments.inputs[0], arguments.output, options);
@@ -330,38 +311,40 @@ void runExport(const LibraryArguments& arguments, const Globals& globals) {
 
 /// One thing that the command does.
 struct Action {
-    const char* name;
+    std::string_view name;
     const char* inputs;  ///< as they are written
     std::size_t least, most;
     enum class Output { none, optional, required } output;
-    const char* options;  ///< that it takes, with a space after each
+    unsigned kind;  ///< OptionRow::inputs
     void (*run)(const LibraryArguments&, const Globals&);
 };
 
 constexpr std::size_t any = 1000000;
+namespace of = jobs::libraries;
 
 constexpr Action actions[] = {
-    {"learn", "MATERIAL…", 1, any, Action::Output::required,
-     "--components --bytes --held-out --limit --limit-maximum --limit-flip --add-to --final ",
-     runLearn},
-    {"merge", "LIBRARY…", 1, any, Action::Output::required,
-     "--components --bytes --held-out --final ", runMerge},
-    {"encode", "LIBRARY MATERIAL", 2, 2, Action::Output::required,
-     "--components --limit --limit-maximum --limit-flip ", runEncode},
-    {"decode", "LIBRARY:NAME", 1, 1, Action::Output::required, "", runDecode},
-    {"export", "LIBRARY", 1, 1, Action::Output::required, "--target --prefix ", runExport},
-    {"mix", "LIBRARY:NAME LIBRARY:NAME…", 2, any, Action::Output::required, "--count ", runMix},
-    {"list", "LIBRARY", 1, 1, Action::Output::none, "", runList},
-    {"search", "LIBRARY MATERIAL", 2, 2, Action::Output::none, "--count ", runSearch},
-    {"reconstruct", "SAMPLES", 1, 1, Action::Output::required,
-     "--library --sigma --bands --bands-to ", runReconstruct},
-    {"next", "[SAMPLES]", 0, 1, Action::Output::optional, "--library --count --sigma --instrument ",
-     runNext},
+    {"learn", "MATERIAL…", 1, any, Action::Output::required, of::learn, runLearn},
+    {"merge", "LIBRARY…", 1, any, Action::Output::required, of::merge, runMerge},
+    {"encode", "LIBRARY MATERIAL", 2, 2, Action::Output::required, of::encode, runEncode},
+    {"decode", "LIBRARY:NAME", 1, 1, Action::Output::required, 0, runDecode},
+    {"export", "LIBRARY", 1, 1, Action::Output::required, of::exported, runExport},
+    {"mix", "LIBRARY:NAME LIBRARY:NAME…", 2, any, Action::Output::required, of::mix, runMix},
+    {"list", "LIBRARY", 1, 1, Action::Output::none, 0, runList},
+    {"search", "LIBRARY MATERIAL", 2, 2, Action::Output::none, of::search, runSearch},
+    {"reconstruct", "SAMPLES", 1, 1, Action::Output::required, of::reconstruct, runReconstruct},
+    {"next", "[SAMPLES]", 0, 1, Action::Output::optional, of::next, runNext},
 };
 
-const Action& actionOf(const std::string& name) {
-    return *std::ranges::find_if(actions,
-                                 [&](const Action& action) { return name == action.name; });
+/// Throws UsageError for an option that is given, but not for this kind of action.
+void requireOptions(const CLI::App& command, std::string_view action, unsigned kind) {
+    const auto rows = jobs::libraryOptions().rows;
+    const auto given = misplacedOption(command, rows, kind);
+    if (!given) return;
+    std::string own;
+    for (const jobs::OptionRow& row : rows)
+        if (row.inputs & kind) own += fmt::format(" --{}", row.name);
+    throw UsageError(fmt::format("library {} takes no {}{}", action, given->name,
+                                 own.empty() ? own : "; it takes" + own));
 }
 
 /// Throws UsageError for what this action does not take.
@@ -375,28 +358,12 @@ void check(const CLI::App& command, const LibraryArguments& arguments, const Act
         throw UsageError(fmt::format("library {} needs -o FILE", action.name));
     if (!arguments.output.empty() && action.output == none)
         throw UsageError(fmt::format("library {} writes no file; leave out -o", action.name));
-    const auto takes = [](const Action& one, const std::string& option) {
-        return std::string_view(one.options).find(option + " ") != std::string_view::npos;
-    };
-    const std::string_view own(action.options);
-    for (const CLI::Option* option : command.get_options()) {
-        const std::string name = option->get_name();
-        const bool ofActions =
-            std::ranges::any_of(actions, [&](const Action& one) { return takes(one, name); });
-        if (option->count() == 0 || !ofActions || takes(action, name)) continue;
-        throw UsageError(
-            fmt::format("library {} takes no {}{}", action.name, name,
-                        own.empty() ? std::string()
-                                    : fmt::format("; it takes {}", own.substr(0, own.size() - 1))));
-    }
-    if (takes(action, "--library") && arguments.reconstruct.library.empty())
-        throw UsageError(fmt::format("library {} needs --library LIBRARY", action.name));
+    requireOptions(command, action.name, action.kind);
     if (command.count("--add-to") > 0)
-        for (const char* option : {"--components", "--bytes", "--held-out", "--limit",
-                                   "--limit-maximum", "--limit-flip"})
-            if (command.count(option) > 0)
-                throw UsageError(
-                    fmt::format("{} is that of the library that --add-to names", option));
+        requireOptions(command, "learn with --add-to (its library states the others)", of::add);
+    if ((action.kind & (of::reconstruct | of::next)) != 0 &&
+        arguments.options.reconstruct.library.empty())
+        throw UsageError(fmt::format("library {} needs --library LIBRARY", action.name));
 }
 
 std::vector<std::string> actionNames() {
@@ -407,6 +374,10 @@ std::vector<std::string> actionNames() {
 
 }  // namespace
 
+OptionTables libraryRows() {
+    return {jobs::libraryOptions().rows};
+}
+
 void addLibrary(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<LibraryArguments>();
     command.add_option("ACTION", arguments->action, "What to do")
@@ -416,80 +387,12 @@ void addLibrary(CLI::App& command, Globals& globals) {
         "INPUT", arguments->inputs,
         "learn: MATERIAL… (specifications, files, folders); merge: LIBRARY…; encode and search: "
         "LIBRARY MATERIAL; decode and mix: LIBRARY:NAME; list, export: LIBRARY; reconstruct: "
-        "SAMPLES; "
-        "next: [SAMPLES]");
+        "SAMPLES; next: [SAMPLES]");
     command.add_option("-o,--output", arguments->output,
                        "The library, the material, of next a CSV, of export a folder");
-    command
-        .add_option(
-            "--components", arguments->components,
-            "learn, merge: components of the basis, auto (by materials that take no part) or a "
-            "number; encode: that are used")
-        ->capture_default_str();
-    command
-        .add_option("--bytes", arguments->learn.learn.bytes,
-                    "learn, merge: of a material in colours; a third of it for each channel")
-        ->check(CLI::Range(6, 65536))
-        ->capture_default_str();
-    command
-        .add_option(
-            "--held-out", arguments->learn.learn.heldOut,
-            "learn, merge: share of the materials that take no part in choosing the components")
-        ->check(CLI::Range(0.01, 0.5))
-        ->capture_default_str();
-    command
-        .add_option("--limit", arguments->encode.log,
-                    "learn, encode: mean error of ln(f + 0.001) beyond which a material keeps a "
-                    "form of its own")
-        ->check(CLI::Range(0.0, ml::greatestLimit))
-        ->default_str(fmt::format("{}", ml::Limits{}.log));
-    command
-        .add_option("--limit-maximum", arguments->encode.maximum,
-                    "learn, encode: the same for the largest error of f cos, as a share of the "
-                    "largest f cos")
-        ->check(CLI::Range(0.0, ml::greatestLimit))
-        ->default_str(fmt::format("{}", ml::Limits{}.maximum));
-    command
-        .add_option("--limit-flip", arguments->encode.flip,
-                    "learn, encode: the same for the mean FLIP of spheres; from 1 on no picture is "
-                    "drawn")
-        ->check(CLI::Range(0.0, ml::greatestLimit))
-        ->default_str(fmt::format("{}", ml::Limits{}.flip));
-    command.add_option("--add-to", arguments->learn.addTo,
-                       "learn: a library whose materials come first");
-    command.add_flag("--final", arguments->final,
-                     "learn, merge: without what adding and merging need");
-    command.add_option("--library", arguments->reconstruct.library,
-                       "reconstruct, next: the library that is the prior");
-    command
-        .add_option("--count", arguments->count,
-                    "search, mix: materials; next: pairs of directions")
-        ->check(CLI::Range(1, 1000))
-        ->capture_default_str();
-    command
-        .add_option("--sigma", arguments->reconstruct.sigma,
-                    "reconstruct, next: standard uncertainty of the samples, as in fit: 2%, 0.001, "
-                    "2%+0.001; reconstruct also column or FILE.csv")
-        ->capture_default_str();
-    command
-        .add_option("--instrument", arguments->instrument,
-                    "next: free, or in-plane for a goniometer in the plane of incidence")
-        ->check(CLI::IsMember({"free", "in-plane"}))
-        ->capture_default_str();
-    command
-        .add_option(
-            "--target", arguments->exporting.targets,
-            "export: shaders (glsl, glsl-es, hlsl, slang, metal, wgsl) and containers of texels "
-            "(bin, dds, exr, ktx2, …), with commas, or all")
-        ->capture_default_str();
-    command.add_option("--prefix", arguments->exporting.prefix, "export: of the names in shaders")
-        ->capture_default_str();
-    command.add_option("--bands", arguments->reconstruct.bands,
-                       "reconstruct: error bands at pairs of directions: a CSV with wi_x ... wo_z, "
-                       "or plane:30/60 for planes of incidence");
-    command.add_option("--bands-to", arguments->reconstruct.bandsTo, "CSV file for the bands");
+    addOptions(command, jobs::libraryOptions(), arguments->options);
     command.callback([arguments, &globals, &command] {
-        const Action& action = actionOf(arguments->action);
+        const Action& action = *std::ranges::find(actions, arguments->action, &Action::name);
         check(command, *arguments, action);
         for (const char* option : {"--components", "--bytes", "--held-out"})
             arguments->learnGiven |= command.count(option) > 0;

@@ -1,5 +1,7 @@
 #include "option_values.h"
 
+#include "value_table.h"
+
 #include <hshfit/accuracy/metrics.h>
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
@@ -21,15 +23,15 @@
 namespace hshfit::cli {
 namespace {
 
-/// Options that take several values as one word; lists that CLI11 takes apart say so themselves.
-constexpr std::string_view takeCommas[] = {"--bases",   "--halfway",  "--light",
-                                           "--metrics", "--outgoing", "--repair",
-                                           "--target",  "--wi",       "--wo"};
+/// Options of commands without rows, and of several syntaxes, that take several values as one word.
+constexpr std::string_view takeCommas[] = {"--halfway", "--light", "--outgoing", "--wi", "--wo"};
 
 bool takesCommas(const CLI::App& command, const std::string& name) {
     const CLI::Option* option = command.get_option_no_throw(name);
-    return option && (option->get_delimiter() == ',' ||
-                      std::ranges::find(takeCommas, name) != std::end(takeCommas));
+    if (!option) return false;
+    const jobs::OptionRow* row = findRow(command, *option);
+    return (row && row->values.syntax == Syntax::list) || option->get_delimiter() == ',' ||
+           std::ranges::find(takeCommas, name) != std::end(takeCommas);
 }
 
 bool isNumber(std::string_view word) {

@@ -1,16 +1,16 @@
 #include "command.h"
+#include "command_rows.h"
+#include "job_options.h"
 #include "svbrdf_filtered.h"
-#include "within.h"
 
 #include <hshfit/error.h>
 #include <hshfit/files/output_rule.h>
 #include <hshfit/percent.h>
 #include <hshfit/pictures/poor.h>
-#include <hshfit/representation/forms/form.h>
 
 #include <jobs/maps/map_answers.h>
+#include <jobs/maps/map_options.h>
 #include <jobs/maps/map_processes.h>
-#include <jobs/maps/svbrdf.h>
 #include <jobs/source/quality.h>
 
 #include <fmt/format.h>
@@ -19,17 +19,14 @@
 #include <nlohmann/json.hpp>
 
 #include <cstdlib>
+#include <variant>
 
 namespace hshfit::cli {
 namespace {
 
 struct SvbrdfArguments {
     std::string description, output;
-    std::string mips = "reflectance", writes = "direct", halfway = "8,4,3";
-    std::size_t memoryMegabytes = 1024;
-    int harmonics = 0;
-    double error = 0;
-    jobs::SvbrdfOptions options;
+    jobs::MapOptions options;
 };
 
 double megabytes(std::size_t bytes) {
@@ -154,67 +151,42 @@ void refuseLaunchers() {
     }
 }
 
-/// Options that were given, but belong to other forms.
-void refuseOptions(const CLI::App& command, const std::string& form,
-                   std::initializer_list<const char*> options) {
-    for (const char* option : options) {
-        if (command.count(option) > 0)
-            throw UsageError(fmt::format("{} does not belong to --form {}", option, form));
-    }
+void print(const jobs::Svbrdf& done, const Globals& globals) {
+    if (!globals.json) return printText(textOf(done));
+    nlohmann::ordered_json json = jobs::svbrdfJson(done);
+    if (const std::string better = betterCall(done); !better.empty())
+        json["captured"]["better"] = better;
+    printJson(json);
 }
 
-void runFiltered(const SvbrdfArguments& arguments, const CLI::App& command,
-                 const Globals& globals) {
-    const jobs::SvbrdfOptions& from = arguments.options;
-    refuseOptions(command, from.form,
-                  {"--basis", "--order", "--outgoing", "--cosine", "--tolerance", "--rank",
-                   "--clusters", "--halfway", "--memory", "--writes"});
-    if (from.form == "ellipse") refuseOptions(command, from.form, {"--harmonics"});
-    jobs::FilteredMapOptions options{.form = from.form,
-                                     .harmonics = arguments.harmonics,
-                                     .precision = from.precision,
-                                     .mips = from.mips,
-                                     .force = from.force,
-                                     .checks = static_cast<int>(from.checks)};
-    if (command.count("--error") > 0) options.error = arguments.error;
-    runFilteredMap(arguments.description, arguments.output, options, globals);
+void print(const jobs::FilteredMapAnswer& done, const Globals& globals) {
+    if (globals.json) return printJson(jobs::filteredMapJson(done));
+    printText(cli::textOf(done));
 }
 
 void runSvbrdf(SvbrdfArguments& arguments, const CLI::App& command, const Globals& globals) {
-    jobs::SvbrdfOptions& options = arguments.options;
-    if (options.form.empty())
-        options.form = jobs::turnsTexels(arguments.description) ? "filtered" : "outgoing";
-    options.mips = arguments.mips == "reflectance";
-    options.memory = arguments.memoryMegabytes << 20;
-    options.pastPageCache = arguments.writes == "direct";
-    options.halfway = parseHalfway(arguments.halfway);
+    jobs::MapOptions& options = arguments.options;
     // Also where a file of a valid set was taken away.
-    options.force = outputRule().replace;
+    options.texels.force = outputRule().replace;
     refuseLaunchers();
-    if (options.precision == "half") options.precision = "float16";
-    if (jobs::isFilteredForm(options.form)) return runFiltered(arguments, command, globals);
-    refuseOptions(command, options.form, {"--harmonics"});
-    if (options.form != "halfway") refuseOptions(command, options.form, {"--halfway"});
-    if (command.count("--error") > 0) options.error = arguments.error;
-    if (options.rank > 0 && options.form == "outgoing")
-        throw UsageError("--rank belongs to --form low-rank, clusters or halfway");
-    const jobs::Svbrdf done =
-        jobs::svbrdf(arguments.description, arguments.output, options, listenerFor(globals));
-    if (globals.json) {
-        nlohmann::ordered_json json = jobs::svbrdfJson(done);
-        if (const std::string better = betterCall(done); !better.empty())
-            json["captured"]["better"] = better;
-        return printJson(json);
-    }
-    printText(textOf(done));
+    options.form = jobs::mapFormOf(arguments.description, options);
+    if (const auto given =
+            misplacedOption(command, jobs::mapOptions().rows, jobs::mapFormBit(options.form)))
+        throw UsageError(fmt::format("{} is for --form {}, not for {}", given->name,
+                                     jobs::mapFormNames(given->row->inputs), options.form));
+    const auto done =
+        jobs::makeMap(arguments.description, arguments.output, options, listenerFor(globals));
+    std::visit([&](const auto& made) { print(made, globals); }, done);
 }
 
 }  // namespace
 
+OptionTables svbrdfRows() {
+    return {jobs::mapOptions().rows};
+}
+
 void addSvbrdf(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<SvbrdfArguments>();
-    jobs::SvbrdfOptions& options = arguments->options;
-    options.form.clear();  // by the description
     command
         .add_option("DESCRIPTION", arguments->description,
                     "A model and its parameters, numbers or maps, as JSON")
@@ -224,77 +196,7 @@ void addSvbrdf(CLI::App& command, Globals& globals) {
                     "Folder for material.ktx2, material.json, errors.png and, of harmonics, "
                     "harmonics.ktx2, of halfway, the materials")
         ->required();
-    command
-        .add_option("--form", options.form,
-                    "outgoing: all coefficients; low-rank: weights of shared shapes; clusters: "
-                    "the index of a shared material; halfway: likewise, of a material in the "
-                    "halfway form. Of turned texels: ellipse or harmonics of the "
-                    "normals' distribution; filtered: the cheaper one within --error (default: "
-                    "filtered where the description has normals or directions, else outgoing)")
-        ->check(CLI::IsMember(
-            std::vector<std::string>(std::begin(jobs::mapForms), std::end(jobs::mapForms))));
-    command.add_option("--basis", options.basis, "Basis over incoming directions")
-        ->capture_default_str();
-    command.add_option("--order", options.order, "Bands of the basis")
-        ->check(within(jobs::bounds::mapOrder))
-        ->capture_default_str();
-    command.add_option("--outgoing", options.outgoing,
-                       "Outgoing directions: N elevations, or WxH (default: 8 elevations where all "
-                       "texels are isotropic, else 8x8)");
-    command.add_flag("--cosine", options.cosine, "Coefficients of f cos(theta_i) instead of f");
-    command.add_option("--precision", options.precision, "Numbers of the texture: half or float32")
-        ->check(CLI::IsMember({"half", "float16", "float32"}))
-        ->default_str("half");
-    command
-        .add_option("--tolerance", options.tolerance,
-                    "Relative error of lobes between the nodes of their table")
-        ->check(within(jobs::bounds::mapTolerance))
-        ->capture_default_str();
-    command.add_option("--rank", options.rank, "Shared shapes (default: by --error)")
-        ->check(within(jobs::bounds::mapRank));
-    command
-        .add_option("--error", arguments->error,
-                    "With --form low-rank or clusters: the largest relative error that shared "
-                    "shapes may leave in a sampled texel (default: 0.01); with --form filtered or "
-                    "harmonics: that of a level against samples (default: 0.1)")
-        ->check(within(jobs::bounds::mapError));
-    command
-        .add_option("--harmonics", arguments->harmonics,
-                    "Order of the harmonics of --form harmonics, odd (default: 9, 17 or 33 by "
-                    "--error)")
-        ->check(within(jobs::bounds::mapHarmonics));
-    command
-        .add_option("--halfway", arguments->halfway,
-                    "Functions along each axis of the materials of --form halfway, as of hshfit "
-                    "project")
-        ->capture_default_str();
-    command
-        .add_option("--clusters", options.clusters,
-                    "Shared materials of --form clusters or halfway, of each level")
-        ->check(within(jobs::bounds::mapClusters))
-        ->capture_default_str();
-    command
-        .add_option("--mips", arguments->mips,
-                    "reflectance: levels of averaged reflectance; none: level 0 alone")
-        ->check(CLI::IsMember({"reflectance", "none"}))
-        ->capture_default_str();
-    command
-        .add_option("--checks", options.checks,
-                    "Texels of each level that are measured against the texels that they stand for")
-        ->check(within(jobs::bounds::mapChecks))
-        ->capture_default_str();
-    command
-        .add_option("--memory", arguments->memoryMegabytes,
-                    "MiB that bands of the map may take, of each process")
-        ->check(within(jobs::bounds::mapMemory))
-        ->capture_default_str();
-    command
-        .add_option("--writes", arguments->writes,
-                    "direct: texels go past the page cache, where the file system can; cached: "
-                    "through it, for a slow disk or files that are read at once")
-        ->check(CLI::IsMember({"direct", "cached"}))
-        ->capture_default_str();
-    command.add_flag("--force", options.force, "Replace existing files");
+    addOptions(command, jobs::mapOptions(), arguments->options);
     command.callback([arguments, &command, &globals] { runSvbrdf(*arguments, command, globals); });
 }
 

@@ -2,12 +2,8 @@
 
 #include <hshfit/percent.h>
 
-#include <jobs/maps/map_answers.h>
-#include <jobs/source/quality.h>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 namespace hshfit::cli {
 namespace {
@@ -31,6 +27,8 @@ std::string textOf(const jobs::FilteredLevel& level, std::size_t index) {
         text += fmt::format("; the samples' own error {}", percent(level.noise, 2));
     return text + "\n";
 }
+
+}  // namespace
 
 std::string textOf(const jobs::FilteredMapAnswer& done) {
     std::string text = fmt::format(
@@ -59,16 +57,6 @@ std::string textOf(const jobs::FilteredMapAnswer& done) {
         text += textOf(done.levels[level], level);
     for (const std::string& file : done.files) text += fmt::format("  {}\n", file);
     return text;
-}
-
-}  // namespace
-
-void runFilteredMap(const std::string& description, const std::string& folder,
-                    const jobs::FilteredMapOptions& options, const Globals& globals) {
-    const jobs::FilteredMapAnswer done =
-        jobs::filteredMap(description, folder, options, listenerFor(globals));
-    if (globals.json) return printJson(jobs::filteredMapJson(done));
-    printText(textOf(done));
 }
 
 }  // namespace hshfit::cli

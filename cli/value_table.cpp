@@ -48,15 +48,6 @@ Words helpWords() {
     return words;
 }
 
-Words mapFormWords() {
-    return {{"outgoing"}, {"low-rank"},  {"clusters"}, {"halfway"},
-            {"ellipse"},  {"harmonics"}, {"filtered"}};
-}
-
-Words mapPrecisionWords() {
-    return {{"half"}, {"float32"}};
-}
-
 Words rotationWords() {
     return {{"exact"}, {"through-sh"}, {"table"}, {"paper-shift"}};
 }
@@ -80,13 +71,7 @@ constexpr ValueRow valueRows[] = {
     {"import", "FILE", {nullptr, Syntax::word, Files::read, ""}},
     {"info", "SPEC", {nullptr, Syntax::either, Files::read, ""}},
     {"irradiance", "SPEC", {nullptr, Syntax::light, Files::read, ""}},
-    {"library", "--add-to", {nullptr, Syntax::word, Files::read, ""}},
-    {"library", "--bands", {nullptr, Syntax::word, Files::read, ".csv"}},
-    {"library", "--bands-to", {nullptr, Syntax::word, Files::written, ".csv"}},
-    {"library", "--library", {nullptr, Syntax::word, Files::read, ""}},
     {"library", "--output", {nullptr, Syntax::word, Files::written, ".library"}},
-    {"library", "--sigma", jobs::sigmaValues},
-    {"library", "--target", {jobs::targetWords, Syntax::list}},
     {"library", "INPUT", {nullptr, Syntax::brdf, Files::read, ""}},
     {"light", "SPEC", {nullptr, Syntax::light, Files::read, ""}},
     {"list", "TEXT", {presetWords}},
@@ -100,9 +85,7 @@ constexpr ValueRow valueRows[] = {
     {"sample", "--output", {nullptr, Syntax::word, Files::written, ".csv"}},
     {"stress", "--output", {nullptr, Syntax::word, Files::folder}},
     {"svbrdf", "DESCRIPTION", {nullptr, Syntax::word, Files::read, ".json"}},
-    {"svbrdf", "--form", {mapFormWords}},
     {"svbrdf", "--output", {nullptr, Syntax::word, Files::folder}},
-    {"svbrdf", "--precision", {mapPrecisionWords}},
     {"tradeoff", "--output", {nullptr, Syntax::word, Files::folder}},
     {"transfer", "--output", {nullptr, Syntax::word, Files::folder}},
     {"", "--basis", {basisWords}},
@@ -149,11 +132,16 @@ const Values* statedIn(const Values& values) {
 
 }  // namespace
 
-const Values* findValues(const CLI::App& command, const CLI::Option& option) {
+const jobs::OptionRow* findRow(const CLI::App& command, const CLI::Option& option) {
     const auto named = std::ranges::find(commands(), command.get_name(), &Command::name);
-    if (named != commands().end() && named->options)
-        for (const auto rows : named->options())
-            if (const jobs::OptionRow* row = rowOf(rows, option)) return statedIn(row->values);
+    if (named == commands().end() || !named->options) return nullptr;
+    for (const auto rows : named->options())
+        if (const jobs::OptionRow* row = rowOf(rows, option)) return row;
+    return nullptr;
+}
+
+const Values* findValues(const CLI::App& command, const CLI::Option& option) {
+    if (const jobs::OptionRow* row = findRow(command, option)) return statedIn(row->values);
     const auto row = std::ranges::find_if(valueRows, [&](const ValueRow& each) {
         return (each.command.empty() || each.command == command.get_name()) &&
                (each.option.starts_with("--")

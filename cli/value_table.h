@@ -30,6 +30,9 @@ struct ValueRow {
 
 std::span<const ValueRow> valueTable();
 
+/// The row of an option of a command; null if it has none.
+const jobs::OptionRow* findRow(const CLI::App& command, const CLI::Option& option);
+
 /// The values of an option of a command; null if no row states them.
 const Values* findValues(const CLI::App& command, const CLI::Option& option);
 

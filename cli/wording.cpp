@@ -115,6 +115,7 @@ const CommandRow commandsOfFunctions[] = {
                     : "hshfit fit " + forShell(call.subject) + optionsOf(call) + newly(call.output);
      }},
     {"formats", [](const Call&) -> std::string { return "hshfit list formats"; }},
+    {"learn", [](const Call&) -> std::string { return "hshfit library learn"; }},
     {"linearlyTransformedCosines", [](const Call&) -> std::string { return "hshfit ltc"; }},
     {"metricCatalog", [](const Call&) -> std::string { return "hshfit list metrics"; }},
     {"project",

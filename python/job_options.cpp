@@ -56,12 +56,14 @@ struct Setter {
         *value = textOf(given);
         if (row.values.files != jobs::Files::none && value->empty() && !given.is_none())
             throw UsageError(fmt::format("{}: an empty path; valid: None or a name", keyword));
+        requireKnown(*value);
+    }
+    void requireKnown(const std::string& word) const {
         if (!row.values.complete) return;
         std::vector<std::string> known;
-        for (const jobs::Word& word : row.values.words()) known.push_back(word.text);
-        for (const std::string& word : known)
-            if (word == *value) return;
-        throw spelling::unknown(keyword, *value, known);
+        for (const jobs::Word& each : row.values.words()) known.push_back(each.text);
+        if (std::ranges::find(known, word) == known.end())
+            throw spelling::unknown(keyword, word, known);
     }
     void operator()(std::vector<std::string>* value) const {
         value->clear();
@@ -84,7 +86,11 @@ struct Setter {
         *value = cast<std::optional<Number>>();
         if (*value && row.range) requireWithin(keyword.c_str(), **value, *row.range);
     }
-    void operator()(const jobs::Spelled& value) const { value.set(value.at, textOf(given)); }
+    void operator()(const jobs::Spelled& value) const {
+        const std::string word = textOf(given);
+        if (!word.empty()) requireKnown(word);
+        value.set(value.at, word);
+    }
     template <class Value>
     void operator()(Value* value) const {
         const auto asked = cast<Value>();
@@ -156,6 +162,13 @@ std::string withKeywords(std::string_view help) {
     return out + text;
 }
 
+/// The words of a flag that has two on the command line.
+std::string flagWords(const jobs::BoundOption& option) {
+    if (!std::holds_alternative<bool*>(option.value) || !option.row->values.words) return {};
+    const std::vector<jobs::Word> words = option.row->values.words();
+    return fmt::format("True for {}, False for {}; ", words[0].text, words[1].text);
+}
+
 }  // namespace
 
 Options joined(std::initializer_list<Options> parts) {
@@ -184,7 +197,14 @@ void Keywords::set(const Options& options) {
         if (!left_.contains(keyword)) continue;
         const py::object given = left_.attr("pop")(keyword);
         std::visit(Setter{*option.row, keyword, given}, option.value);
+        set_.push_back(option.row);
     }
+}
+
+const OptionRow* Keywords::misplaced(unsigned inputs) const {
+    const auto found = std::ranges::find_if(
+        set_, [&](const OptionRow* row) { return (row->inputs & inputs) == 0; });
+    return found == set_.end() ? nullptr : *found;
 }
 
 py::object Keywords::take(const char* name) {
@@ -218,7 +238,8 @@ std::string docstring(const OptionFunction& function) {
         const std::string keyword = keywordOf(*option.row);
         signature +=
             fmt::format(", {}: {}", keyword, std::visit(Stater{*option.row}, option.value));
-        lines += fmt::format("\n{:<11} {}", keyword, withKeywords(option.row->help));
+        lines += fmt::format("\n{:<11} {}{}", keyword, flagWords(option),
+                             withKeywords(option.row->help));
     }
     for (const auto& [name, type] : function.others)
         signature += fmt::format(", {}: {} = None", name, type);

@@ -30,6 +30,9 @@ public:
     /// Sets the options that are given. Throws UsageError for a value out of its range, and
     /// TypeError for one of another type.
     void set(const Options& options);
+    /// The first option that was set and is not for the kinds `inputs` (OptionRow::inputs), or
+    /// null.
+    const jobs::OptionRow* misplaced(unsigned inputs) const;
     /// The argument, or None.
     py::object take(const char* name);
     /// Throws TypeError if there are arguments that nobody took.
@@ -39,6 +42,7 @@ public:
 
 private:
     py::dict left_;
+    std::vector<const jobs::OptionRow*> set_ = {};
 };
 
 /// Sets the options from the keyword arguments of a function that takes no others but `progress`,

@@ -137,11 +137,9 @@ py::array_t<double> nextOf(const Opened& self, std::size_t count, const py::obje
     const std::string from = samples.is_none() ? std::string() : pathOf(samples, "samples");
     std::vector<ml::NextPair> pairs;
     unwatched({}, [&] {
-        pairs = jobs::nextPairs(from, "",
-                                {.library = self.path,
-                                 .sigma = sigma,
-                                 .count = count,
-                                 .inPlane = instrument == "in-plane"});
+        pairs = jobs::nextPairs(
+            from, "",
+            {.library = self.path, .sigma = sigma, .count = count, .instrument = instrument});
     });
     std::vector<double> rows;
     for (const ml::NextPair& next : pairs)

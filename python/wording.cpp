@@ -75,6 +75,7 @@ constexpr Function functions[] = {
     {"writers", "catalog('writers')"},
     {"metricCatalog", "catalog('metrics')"},
     {"asRgb", "open(…, rgb=True)"},
+    {"learn", "Library.learn"},
     {"linearlyTransformedCosines", "the command ltc of the program"},
 };
 

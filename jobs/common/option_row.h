@@ -54,7 +54,7 @@ struct Values {
 /// and arguments, defaults, docstrings and stubs of Python come from this row.
 ///
 /// The default is what the struct starts with. A flag that is true at first is --no-NAME on the
-/// command line, and an optional one has both.
+/// command line, and an optional one has both; one with two words takes these, the first for true.
 struct OptionRow {
     std::string_view name;  ///< "max-evaluations": --max-evaluations, and max_evaluations in Python
     Member value;

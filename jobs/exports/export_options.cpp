@@ -2,11 +2,8 @@
 #include "export_map.h"
 #include "export_material.h"
 
-#include <hshfit/spelling.h>
-
+#include <jobs/common/enum_words.h>
 #include <jobs/common/option_words.h>
-
-#include <array>
 
 namespace hshfit::jobs {
 namespace {
@@ -14,20 +11,9 @@ namespace {
 using options::at;
 using options::spelled;
 
-std::vector<Word> packingWords() {
-    return {{"coef4", "four coefficients a texel"},
-            {"rgb", "one coefficient, its channels a texel"}};
-}
-
-gpu::Packing parsePacking(const std::string& word) {
-    if (word == "coef4") return gpu::Packing::coef4;
-    if (word == "rgb") return gpu::Packing::rgb;
-    throw spelling::unknown("packing", word, std::array<std::string_view, 2>{"coef4", "rgb"});
-}
-
-std::string_view packingWord(gpu::Packing packing) {
-    return packing == gpu::Packing::rgb ? "rgb" : "coef4";
-}
+constexpr EnumWord packings[] = {{"coef4", "four coefficients a texel"},
+                                 {"rgb", "one coefficient, its channels a texel"}};
+using Packings = EnumWords<packings, gpu::Packing>;
 
 std::vector<Word> wrapWords() {
     return {{"clamp"}, {"repeat"}};
@@ -62,10 +48,11 @@ constexpr OptionRow exportRows[] = {
               "or auto: texture above 4096 numbers, else constants"}
         .takes({.words = storageWords})
         .onlyFor(exports::coefficients),
-    OptionRow{"packing",
-              spelled<parsePacking, packingWord, &ExportOptions::pack, &gpu::PackOptions::packing>,
-              "coef4: four coefficients a texel; rgb: one coefficient, its channels a texel"}
-        .takes({.words = packingWords, .complete = true})
+    OptionRow{
+        "packing",
+        spelled<Packings::parse, Packings::name, &ExportOptions::pack, &gpu::PackOptions::packing>,
+        "coef4: four coefficients a texel; rgb: one coefficient, its channels a texel"}
+        .takes({.words = Packings::words, .complete = true})
         .onlyFor(exports::coefficients),
     OptionRow{"chroma", at<&ExportOptions::pack, &gpu::PackOptions::luminanceChroma>,
               "Store luminance and chroma (Y, Co, Cg)"}

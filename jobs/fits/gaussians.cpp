@@ -1,5 +1,6 @@
 #include "gaussians.h"
 
+#include <jobs/common/enum_words.h>
 #include <jobs/common/metric_json.h>
 #include <jobs/common/option_words.h>
 #include <jobs/common/shared_options.h>
@@ -23,19 +24,8 @@ namespace {
 using options::at;
 using options::spelled;
 
-brdfs::GaussianKind parseGaussianKind(std::string_view name) {
-    if (name == "sg") return brdfs::GaussianKind::spherical;
-    if (name == "asg") return brdfs::GaussianKind::anisotropic;
-    throw spelling::unknown("kind", name, std::array<std::string_view, 2>{"sg", "asg"});
-}
-
-std::string_view gaussianKindName(brdfs::GaussianKind kind) {
-    return kind == brdfs::GaussianKind::spherical ? "sg" : "asg";
-}
-
-std::vector<Word> gaussianKinds() {
-    return {{"sg", "spherical"}, {"asg", "anisotropic"}};
-}
+constexpr EnumWord gaussianKinds[] = {{"sg", "spherical"}, {"asg", "anisotropic"}};
+using GaussianKinds = EnumWords<gaussianKinds, brdfs::GaussianKind>;
 
 std::vector<Word> gaussianWeights() {
     return {{"cosine"}, {"none"}};
@@ -46,10 +36,10 @@ constexpr OptionRow gaussianRows[] = {
               "Gaussians for each outgoing direction"}
         .within(Bounds<int>{1, 16}),
     OptionRow{"kind",
-              spelled<parseGaussianKind, gaussianKindName, &GaussianOptions::fit,
+              spelled<GaussianKinds::parse, GaussianKinds::name, &GaussianOptions::fit,
                       &brdfs::GaussianFitOptions::kind>,
               "sg (spherical) or asg (anisotropic)"}
-        .takes({.words = gaussianKinds, .complete = true}),
+        .takes({.words = GaussianKinds::words, .complete = true}),
     OptionRow{"outgoing", at<&GaussianOptions::outgoing>, "N (elevations) or THETA,PHI in degrees"}
         .takes({.syntax = Syntax::outgoing}),
     OptionRow{"weight", at<&GaussianOptions::weight>,
@@ -111,7 +101,7 @@ nlohmann::ordered_json gaussiansJson(const FittedGaussians& fitted, const std::s
             {"version", 1},
             {"brdf", fitted.brdf},
             {"output", output},
-            {"kind", gaussianKindName(options.fit.kind)},
+            {"kind", GaussianKinds::name(options.fit.kind)},
             {"lobes", options.fit.lobes},
             {"outgoing", fitted.outgoing.spec()},
             {"mean_error", fitted.meanError},

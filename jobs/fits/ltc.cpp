@@ -1,41 +1,18 @@
 #include "ltc.h"
 
 #include <jobs/common/clock.h>
-
-#include <hshfit/spelling.h>
+#include <jobs/common/enum_words.h>
 
 #include <brdfs/fit/ltc_files.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-
 namespace hshfit::jobs {
 namespace {
 
-struct MappingName {
-    std::string_view name;
-    brdfs::RoughnessMapping mapping;
-};
-constexpr MappingName mappings[] = {{"square", brdfs::RoughnessMapping::square},
-                                    {"linear", brdfs::RoughnessMapping::linear},
-                                    {"exponent", brdfs::RoughnessMapping::exponent}};
-
-brdfs::RoughnessMapping parseMapping(std::string_view name) {
-    const auto* row = std::ranges::find(mappings, name, &MappingName::name);
-    if (row == std::end(mappings))
-        throw spelling::unknown("mapping", name, spelling::namesOf(mappings));
-    return row->mapping;
-}
-
-std::string_view mappingName(brdfs::RoughnessMapping mapping) {
-    return std::ranges::find(mappings, mapping, &MappingName::mapping)->name;
-}
-
-std::vector<Word> mappingWords() {
-    return {{"square", "r^2"}, {"linear", "r"}, {"exponent", "2/r^4 - 2"}};
-}
+constexpr EnumWord mappings[] = {{"square", "r^2"}, {"linear", "r"}, {"exponent", "2/r^4 - 2"}};
+using Mappings = EnumWords<mappings, brdfs::RoughnessMapping>;
 
 using options::at;
 
@@ -45,10 +22,10 @@ constexpr OptionRow ltcRows[] = {
     OptionRow{"parameter", at<&brdfs::LtcTableOptions::parameter>,
               "What runs over roughness; several with commas (ax,ay) get the same value"},
     OptionRow{"mapping",
-              options::spelled<parseMapping, mappingName, &brdfs::LtcTableOptions::mapping>,
+              options::spelled<Mappings::parse, Mappings::name, &brdfs::LtcTableOptions::mapping>,
               "Its value for the roughness r of a column: square (r^2), linear (r) or exponent "
               "(2/r^4 - 2)"}
-        .takes({.words = mappingWords, .complete = true}),
+        .takes({.words = Mappings::words, .complete = true}),
 };
 
 }  // namespace

@@ -104,11 +104,7 @@ Json sidecarOf(const std::string& path, const ml::Library& library, const gpu::T
 std::vector<const gpu::Target*> targetsOf(const std::string& names) {
     std::vector<const gpu::Target*> chosen;
     for (const gpu::Target* target : gpu::selectTargets(names)) {
-        const bool osl = target->kind == gpu::Target::Kind::shader && target->name == "osl";
-        const bool fits = (target->kind == gpu::Target::Kind::container ||
-                           target->kind == gpu::Target::Kind::shader) &&
-                          !osl;
-        if (fits)
+        if (holdsLibrary(*target))
             chosen.push_back(target);
         else if (names != "all")
             throw UsageError(fmt::format(
@@ -120,6 +116,11 @@ std::vector<const gpu::Target*> targetsOf(const std::string& names) {
 }
 
 }  // namespace
+
+bool holdsLibrary(const gpu::Target& target) {
+    using Kind = gpu::Target::Kind;
+    return target.kind == Kind::container || (target.kind == Kind::shader && target.name != "osl");
+}
 
 ExportedLibrary exportLibrary(const std::string& path, const std::string& folder,
                               const LibraryExportOptions& options) {

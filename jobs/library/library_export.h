@@ -1,6 +1,7 @@
 #pragma once
 
 #include <hshfit/gpu/containers/containers.h>
+#include <hshfit/gpu/containers/targets.h>
 #include <hshfit/material_library/library.h>
 
 #include <cstddef>
@@ -15,6 +16,9 @@ struct LibraryExportOptions {
     std::string prefix = "hsh";  ///< of the names in shaders
     bool force = false;
 };
+
+/// Whether a library can be this target: containers, and shaders but OSL's.
+bool holdsLibrary(const gpu::Target& target);
 
 struct ExportedLibrary {
     std::string name;                    ///< of the files

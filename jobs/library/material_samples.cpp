@@ -155,10 +155,11 @@ std::vector<ml::NextPair> nextPairs(const std::string& samples, const std::strin
             gather(*data, samples, options.sigma, ReconstructOptions{}.samples).observations);
         requireReadable(*data);
     }
-    const std::vector<ml::NextPair> pairs = posterior.next({.count = options.count,
-                                                            .inPlane = options.inPlane,
-                                                            .relative = sigma.relative,
-                                                            .absolute = sigma.absolute});
+    const std::vector<ml::NextPair> pairs =
+        posterior.next({.count = options.count,
+                        .inPlane = options.instrument == "in-plane",
+                        .relative = sigma.relative,
+                        .absolute = sigma.absolute});
     if (output.empty()) return pairs;
     std::string text = "theta_i,phi_i,theta_o,phi_o,expected_error\n";
     for (const ml::NextPair& next : pairs)

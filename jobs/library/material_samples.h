@@ -39,7 +39,7 @@ ReconstructedMaterial reconstructMaterial(const std::string& samples, const std:
 struct NextPairsOptions {
     std::string library, sigma = "2%";
     std::size_t count = 10;
-    bool inPlane = false;
+    std::string instrument = "free";  ///< or "in-plane", a goniometer in the plane of incidence
 };
 
 /// The pairs to measure next, after those of `samples` if there are any, as a CSV with the columns

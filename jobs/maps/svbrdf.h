@@ -26,7 +26,7 @@ struct SvbrdfOptions {
     std::size_t rank = 0;               ///< shared shapes; 0: as many as `error` takes
     double error = 0.01;                ///< the largest error of a sampled texel, relative
     std::size_t clusters = 256;
-    HalfwayOrders halfway = {7, 6, 5};  ///< of the shared materials of the form halfway
+    HalfwayOrders halfway = {8, 4, 3};  ///< of the shared materials of the form halfway
     bool mips = true;
     bool force = false;
     std::size_t memory = std::size_t{1} << 30;  ///< bytes for bands, of each process

@@ -10,11 +10,9 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace hshfit::jobs {
@@ -22,11 +20,6 @@ namespace hshfit::jobs {
 /// Light that reaches a vertex: with nothing in the way, past what is in the way, and by other
 /// surfaces too.
 enum class TransferKind { unshadowed, shadowed, interreflected };
-
-/// Names in the order of TransferKind and of Sides.
-inline constexpr std::array<std::string_view, 3> transferKinds{"unshadowed", "shadowed",
-                                                               "interreflected"};
-inline constexpr std::array<std::string_view, 3> transferSides{"automatic", "front", "both"};
 
 struct TransferOptions {
     TransferKind kind = TransferKind::interreflected;

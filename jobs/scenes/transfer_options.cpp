@@ -1,10 +1,6 @@
 #include "transfer.h"
 
-#include <hshfit/spelling.h>
-
-#include <jobs/common/option_row.h>
-
-#include <algorithm>
+#include <jobs/common/enum_words.h>
 
 namespace hshfit::jobs {
 namespace {
@@ -12,25 +8,10 @@ namespace {
 using options::at;
 using options::spelled;
 
-/// An enumeration by the names of its values, in their order.
-template <const auto& names, class Enumeration>
-struct Named {
-    static Enumeration parse(const std::string& name) {
-        const auto found = std::ranges::find(names, name);
-        if (found == names.end()) throw spelling::unknown("value", name, names);
-        return static_cast<Enumeration>(found - names.begin());
-    }
-    static std::string_view name(Enumeration value) {
-        return names[static_cast<std::size_t>(value)];
-    }
-    static std::vector<Word> words() {
-        std::vector<Word> all;
-        for (const std::string_view name : names) all.push_back({std::string(name)});
-        return all;
-    }
-};
-using Kinds = Named<transferKinds, TransferKind>;
-using MeshSides = Named<transferSides, decltype(TransferMeshOptions::sides)>;
+constexpr EnumWord transferKinds[] = {{"unshadowed"}, {"shadowed"}, {"interreflected"}};
+constexpr EnumWord transferSides[] = {{"automatic"}, {"front"}, {"both"}};
+using Kinds = EnumWords<transferKinds, TransferKind>;
+using MeshSides = EnumWords<transferSides, decltype(TransferMeshOptions::sides)>;
 
 constexpr OptionRow transferRows[] = {
     OptionRow{"kind", spelled<Kinds::parse, Kinds::name, &TransferOptions::kind>,

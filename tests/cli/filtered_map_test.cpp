@@ -427,6 +427,10 @@ TEST_F(FilteredMap, FormsRefuseOptionsOfOthers) {
         EXPECT_EQ(answer.code, 2) << more << answer.err;
         EXPECT_FALSE(std::filesystem::exists(path("out")));
     }
+    EXPECT_NE(
+        made("-o " + path("out") + " --rank 3")
+            .err.find("--rank is for --form low-rank, clusters and halfway, not for filtered"),
+        std::string::npos);
 }
 
 }  // namespace

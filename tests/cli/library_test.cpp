@@ -300,6 +300,7 @@ TEST_F(LibraryCommand, MistakesAreOneLineAndLeaveNoFile) {
     };
     refused("learn lambert", 2, "needs -o");
     refused("learn lambert --sigma 2%" + out, 2, "takes no --sigma");
+    refused("learn lambert --bytes 30 --add-to " + a + out, 2, "takes no --bytes");
     refused("learn lambert:kd=.3" + out, 2, "two channels or more");
     refused("learn lambert:kd=.3/.2/.1 lambert:kd=.3/.2/.1" + out, 2, "two materials are named");
     refused("learn lambert:kd=.3/.2/.1 absent.binary" + out, 3, "absent.binary");
@@ -315,6 +316,8 @@ TEST_F(LibraryCommand, MistakesAreOneLineAndLeaveNoFile) {
     refused("learn" + words(5, 6) + " --add-to " + path("final.library") + out, 3, "is final");
     write("cut.library", read(a).substr(0, 3000));
     refused("list " + path("cut.library"), 3, "cut.library");
+    write("no.library", "text");
+    refused("list " + path("no.library"), 3, "hshfit library learn makes one");
 }
 
 }  // namespace

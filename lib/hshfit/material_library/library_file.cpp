@@ -7,6 +7,7 @@
 #include <hshfit/files/tensor_file_writer.h>
 #include <hshfit/material_library/log_terms.h>
 #include <hshfit/version.h>
+#include <hshfit/wording.h>
 
 #include <Imath/half.h>
 #include <fmt/format.h>
@@ -388,7 +389,8 @@ Library readLibrary(const std::string& path) {
         return readBasis(reader, root);
     };
     if (!looksLikeLibrary(file.bytes().first(std::min<std::size_t>(file.size(), 64))))
-        throw InputError(fmt::format("{}: is no library of materials", path));
+        throw InputError(
+            fmt::format("{}: is no library of materials; {} makes one", path, Call{"learn"}));
     try {
         Library library = parseLibrary(file.bytes(), path, basisOf);
         file.checkIntact();
