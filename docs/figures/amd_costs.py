@@ -119,6 +119,10 @@ def main(build, data):
             shaders.add("library, %d components" % count,
                         text("%s/%s" % (folder, answer["files"][0])),
                         OF_LIBRARY)
+        run(program, "library", "export", path, "-o", folder, "--target", "glsl", "--own-sums",
+            "--force", "--quiet")
+        shaders.add("library, `--own-sums`", text("%s/%s" % (folder, answer["files"][0])),
+                    OF_LIBRARY)
         for name, call, light in LIGHTING:
             fill = "for (int i = 0; i < light.length(); ++i) light[i] = inputs[2 * k + i].xyz;"
             shaders.add("lighting `%s`" % name, text("%s/lit_hsh_%s.glsl" % (folder, name)),

@@ -73,7 +73,8 @@ Json testsOf(const ml::Library& library, const ExportedLibrary& exported) {
 }
 
 Json sidecarOf(const std::string& path, const ml::Library& library, const gpu::Texels& texels,
-               const ExportedLibrary& exported, std::span<const gpu::ExportedFile> files) {
+               bool ownSums, const ExportedLibrary& exported,
+               std::span<const gpu::ExportedFile> files) {
     Json materials = Json::array();
     for (const std::string& name : exported.materials) {
         const ml::Material& material = *ml::find(library, name);
@@ -87,6 +88,7 @@ Json sidecarOf(const std::string& path, const ml::Library& library, const gpu::T
             {"generator", std::string("hshfit ") + version},
             {"library", path},
             {"value", "f = max(exp(min(Phi_0 + sum_k q_k Phi_k, top)) - offset, 0)"},
+            {"sums", ownSums ? "own" : "shared"},
             {"colorspace", "lin_rec709"},
             {"cos_included", false},
             {"unit", "1/sr"},
@@ -130,10 +132,11 @@ ExportedLibrary exportLibrary(const std::string& path, const std::string& folder
     exported.name = std::filesystem::path(path).stem().string();
     if (library.basis.mean.empty())
         throw InputError(fmt::format("{}: has no basis; export its materials one by one", path));
-    const gpu::SharedSums sums = sumsOf(library, exported);
+    gpu::SharedSums sums = sumsOf(library, exported);
     if (exported.materials.empty())
         throw InputError(
             fmt::format("{}: none of its materials is in the basis; export them one by one", path));
+    if (options.ownSums) sums = gpu::foldedSums(sums);
     const gpu::Texels texels = gpu::materialTexels(sums);
     exported.bytes = sums.stride() * 4 * gpu::numberBytes(texels.number);
 
@@ -151,7 +154,8 @@ ExportedLibrary exportLibrary(const std::string& path, const std::string& folder
                    {"layout", "stream"}},
          .sidecar =
              [&](std::span<const gpu::ExportedFile> written, std::optional<gpu::Role>) {
-                 Json sidecar = sidecarOf(path, library, texels, exported, written);
+                 Json sidecar =
+                     sidecarOf(path, library, texels, options.ownSums, exported, written);
                  sidecar["tests"] = tests;
                  return gpu::readableSidecar(jsonText(sidecar));
              },

@@ -14,6 +14,7 @@ struct LibraryExportOptions {
     /// Languages and containers, with commas; all: those that hold a library.
     std::string targets = "bin,glsl,glsl-es,hlsl,metal,wgsl";
     std::string prefix = "hsh";  ///< of the names in shaders
+    bool ownSums = false;        ///< gpu::foldedSums: faster shaders, larger texels
     bool force = false;
 };
 

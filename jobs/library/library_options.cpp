@@ -102,6 +102,10 @@ constexpr OptionRow libraryRows[] = {
         .takes({libraryTargetWords, Syntax::list})
         .inPython("targets")
         .onlyFor(of::exported),
+    OptionRow{"own-sums", at<&LibraryOptions::exporting, &LibraryExportOptions::ownSums>,
+              "export: texels with the coefficients of each material's own sum in place of its "
+              "coordinates: a faster shader, more bytes, rounded to halves"}
+        .onlyFor(of::exported),
     OptionRow{"prefix", at<&LibraryOptions::exporting, &LibraryExportOptions::prefix>,
               "export: of the names in shaders"}
         .onlyFor(of::exported),

@@ -74,6 +74,23 @@ TEST_F(LibraryCommand, OneShaderForAllMaterials) {
         EXPECT_NEAR(test["value"][c], f[std::min(c, f.size() - 1)], 1e-9) << name;
 }
 
+/// The texels of each material's own sum: as many whatever the number of components, of f alike.
+TEST_F(LibraryCommand, ExportWritesOwnSums) {
+    learn("a.library");
+    const std::string words = "library export " + path("a.library") + " --target bin,glsl --json";
+    const Answer shared = run(words + " -o " + path("shared")),
+                 own = run(words + " --own-sums -o " + path("own"));
+    ASSERT_EQ(own.code, 0) << own.err;
+    EXPECT_GT(Json::parse(own.out)["bytes"], Json::parse(shared.out)["bytes"]);
+    const Json a = Json::parse(read(path("shared/a.hsh.json"))),
+               b = Json::parse(read(path("own/a.hsh.json")));
+    EXPECT_EQ(a["sums"], "shared");
+    EXPECT_EQ(b["sums"], "own");
+    EXPECT_EQ(a["tests"], b["tests"]);
+    EXPECT_EQ(a["materials"], b["materials"]);
+    expectError("library list " + path("a.library") + " --own-sums", 2, "--own-sums", 3);
+}
+
 TEST_F(LibraryCommand, ExportSaysWhatALibraryIsNot) {
     learn("a.library");
     const std::string to = " -o " + path("out");

@@ -105,8 +105,7 @@ Pairs pairsWithLobes() {
     return pairs;
 }
 
-void prove(Language language) {
-    const gpu::SharedSums all = sums();
+void prove(Language language, const gpu::SharedSums& all, double bound) {
     ASSERT_EQ(all.count(), library().materials.size());
     ASSERT_GT(all.stride(), 7u);
     ShaderJob job{{}, pairsWithLobes(), {.order = 0, .colours = 0, .values = {}}};
@@ -135,8 +134,14 @@ void prove(Language language) {
                 worst = std::max(worst, std::abs(found[6 * k + c] - f[c]) / (0.01 + f[c]));
         }
         std::cout << fmt::format("{} {:.1e}\n", library().materials[n].name, worst);
-        EXPECT_LE(worst, 2e-4) << library().materials[n].name;
+        EXPECT_LE(worst, bound) << library().materials[n].name;
     }
+}
+
+/// Texels of functions are exact; halves of a material's own coefficients are rounded.
+void prove(Language language) {
+    prove(language, sums(), 2e-4);
+    prove(language, gpu::foldedSums(sums()), 2e-2);
 }
 
 TEST(LibraryShader, GlslOnVulkan) {

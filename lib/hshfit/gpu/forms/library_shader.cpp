@@ -19,6 +19,34 @@ namespace {
 
 using kainjow::mustache::data;
 
+/// The functions as one with a coefficient for each of R, G and B, which are those of `values`.
+Representation inColours(const Representation& functions, std::vector<double> values) {
+    Representation colours = functions;
+    colours.head.channels = Channels::rgb();
+    auto& content = std::get<HalfwayArray>(colours.content);
+    content.halfway.shape[0] = 3;
+    content.halfway.values = std::move(values);
+    content.ceilings.assign(3, {});
+    return colours;
+}
+
+/// Phi_0 + sum_k q_k Phi_k of the three channels of a material.
+std::vector<double> ownSums(const SharedSums& sums, std::size_t material) {
+    const std::vector<double>& all = sums.functions.as<HalfwayArray>()->halfway.values;
+    const std::size_t count = all.size() / sums.functions.head.channels.count();
+    const double* const texels = &sums.materials[4 * sums.stride() * material];
+    std::vector<double> own;
+    for (std::size_t c = 0; c < 3; ++c) {
+        own.insert(own.end(), all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count));
+        for (std::size_t at = 0; at < sums.parts.size(); ++at) {
+            const double q = sums.parts[at].scale * texels[4 * at + c];
+            const double* const function = &all[sums.parts[at].function * count];
+            for (std::size_t t = 0; t < count; ++t) own[c * count + t] += q * function[t];
+        }
+    }
+    return own;
+}
+
 void fillMaterials(const SharedSums& sums, FormText& text) {
     fillHalfway(text);
     data parts{data::type::list};
@@ -35,21 +63,51 @@ void fillMaterials(const SharedSums& sums, FormText& text) {
     text.page.set("parts", parts);
     text.page.set("stride", std::to_string(sums.stride()));
     text.page.set("last", std::to_string(sums.stride() - 1));
-    text.page.set("topScale", shaderNumber(sums.topStep * std::numbers::log2e));
-    text.page.set("topFirst", shaderNumber(sums.topFirst * std::numbers::log2e));
+    const double unit = text.constants ? std::numbers::log2e : 1;
+    text.page.set("topScale", shaderNumber(sums.topStep * unit));
+    text.page.set("topFirst", shaderNumber(sums.topFirst * unit));
+    text.page.set("shared", sums.folded == 0);
+    if (sums.folded > 0) text.page.set("texelBase", "first + ");
     text.page.set("offset", shaderNumber(sums.offset));
-    text.page.set("kind", fmt::format("library: {} materials over {} functions", sums.count(),
-                                      sums.functions.head.channels.count() - 1));
+    text.page.set("kind", sums.folded > 0
+                              ? fmt::format("library: {} materials, each its own sum", sums.count())
+                              : fmt::format("library: {} materials over {} functions", sums.count(),
+                                            sums.functions.head.channels.count() - 1));
     text.page.set("orders", false);
     text.page.set("numbers", std::to_string(sums.materials.size()));
     text.page.set("bytes", std::to_string(text.payload.texels.bytes.size()));
     text.page.set("channelNames", "R G B");
-    text.page.set("formula", "f = max(exp(min(Phi_0 + sum_k q_k Phi_k, top)) - offset, 0)");
-    text.cost.products += 3 * sums.stride();
+    text.page.set("formula",
+                  sums.folded > 0
+                      ? "f = max(exp(min(Phi, top)) - offset, 0), Phi a sum of the material's own"
+                      : "f = max(exp(min(Phi_0 + sum_k q_k Phi_k, top)) - offset, 0)");
+    text.cost.products += 3 * (sums.parts.size() + 1);
     text.cost.fetches = sums.stride();
 }
 
 }  // namespace
+
+SharedSums foldedSums(const SharedSums& sums) {
+    SharedSums folded = sums;
+    folded.parts.clear();
+    folded.materials.clear();
+    for (std::size_t m = 0; m < sums.count(); ++m) {
+        std::vector<double> own = ownSums(sums, m);
+        const Representation colours = inColours(sums.functions, own);
+        if (m == 0) {
+            folded.functions = colours;
+            folded.folded = (halfwayStream(colours).size() + 3) / 4;
+        }
+        const std::size_t first = folded.materials.size();
+        for (const StreamNumber& number : halfwayStream(colours))
+            folded.materials.push_back(own[number.value]);
+        folded.materials.resize(first + 4 * folded.folded, 0.0);
+        const auto top =
+            sums.materials.begin() + static_cast<std::ptrdiff_t>(4 * (sums.stride() * (m + 1) - 1));
+        folded.materials.insert(folded.materials.end(), top, top + 4);
+    }
+    return folded;
+}
 
 Texels materialTexels(const SharedSums& sums) {
     const std::size_t texels = sums.materials.size() / 4, width = formWidth;
@@ -72,7 +130,7 @@ std::string libraryShaderSource(Language language, const SharedSums& sums,
     return formText(language, payload, prefix,
                     {.body = embedded::form_library,
                      .storage = Storage::texture,
-                     .constants = true,
+                     .constants = sums.folded == 0,
                      .channels = Channels::rgb(),
                      .fill = [&](FormText& text) { fillMaterials(sums, text); }});
 }

@@ -23,12 +23,19 @@ struct SharedSums {
         double scale = 1;
     };
     std::vector<Part> parts;  ///< of a material; one more texel has t
+    /// Texels that have, in place of parts, the coefficients of a material's own sum
+    /// Phi_0 + sum_k q_k Phi_k, in the order of halfwayStream; 0: parts.
+    std::size_t folded = 0;
     /// The texels of the first material, of the second, …; the fourth lanes are 0.
     std::vector<double> materials;
 
-    std::size_t stride() const { return parts.size() + 1; }  ///< texels of a material
+    std::size_t stride() const { return parts.size() + folded + 1; }  ///< texels of a material
     std::size_t count() const { return materials.size() / (4 * stride()); }
 };
+
+/// The same materials with a sum each: a pair costs one sum for three channels instead of one for
+/// every function, and a material takes as many numbers as that sum has.
+SharedSums foldedSums(const SharedSums& sums);
 
 /// The texels of all materials in float16, one after another in rows of `formWidth`.
 Texels materialTexels(const SharedSums& sums);
