@@ -42,7 +42,7 @@ struct StandardMaterial {
     double seconds;  ///< Candidate::seconds, of tables
 };
 constexpr StandardMaterial standardMaterials[] = {
-    {"gltf", "glTF material", "gltf", 4},
+    {"gltf", "glTF material", "gltf", 2},
     {"openpbr", "OpenPBR Surface", "materialx", 12},
     {"usd", "UsdPreviewSurface", "usd", 16},
 };
@@ -142,14 +142,15 @@ std::vector<Word> formulaWords() {
 std::vector<Candidate> formulaCandidates(const CandidateSource& source) {
     std::vector<Candidate> candidates;
     if (isModel(source.brdf))
-        candidates.push_back({"model", "the model itself", [source] { return theModel(source); }});
+        candidates.push_back(
+            {"model", "the model itself", [source] { return theModel(source); }, 0});
     for (const LobeModel& row : lobeModels)
         candidates.push_back(
-            {"lobes", row.name, [source, &row] { return fittedLobes(source, row); }});
+            {"lobes", row.name, [source, &row] { return fittedLobes(source, row); }, 1});
     for (const StandardMaterial& row : standardMaterials)
         candidates.push_back({row.kind, row.name,
                               [source, &row] { return standardMaterial(source, row.target); },
-                              isModel(source.brdf) ? 4 : row.seconds});
+                              isModel(source.brdf) ? std::min(row.seconds, 4.0) : row.seconds});
     return candidates;
 }
 

@@ -64,9 +64,12 @@ std::string formName(const Form& form) {
     return fmt::format("{} of order {}{}", form.basis, form.order, where) + precision;
 }
 
-/// Candidate::seconds: fits of the halfway form grow with its terms, and two precisions share one.
-double secondsOf(const Form& form) {
-    return form.kind == Kind::halfway ? 0.05 * form.halfway.half * form.halfway.half : 3;
+/// Candidate::seconds: fits of the halfway form grow with its terms, and two precisions share one;
+/// anisotropic BRDFs have more terms and directions.
+double secondsOf(const Form& form, bool isotropic) {
+    const double seconds =
+        form.kind == Kind::halfway ? 0.05 * form.halfway.half * form.halfway.half : 3;
+    return isotropic ? seconds : 4 * seconds;
 }
 
 /// The forms that are tried: of the halfway form few functions and many, in half and in bytes;
@@ -163,7 +166,7 @@ std::vector<Candidate> formCandidates(const CandidateSource& source, const std::
     for (const Form& form : formsFor(source.brdf))
         candidates.push_back({form.kind == Kind::halfway ? "halfway" : "coefficients",
                               formName(form), [=] { return maker->make(form, target); },
-                              secondsOf(form)});
+                              secondsOf(form, source.brdf.laws().isotropic)});
     return candidates;
 }
 

@@ -166,6 +166,16 @@ TEST_F(ChooseCommand, RecommendsNothingBeyondTheStatedError) {
         EXPECT_NE(file.path().extension(), ".glb");
 }
 
+/// The material that is exact comes before forms that take long.
+TEST_F(ChooseCommand, BrushedMetalIsAGltfMaterial) {
+    const Answer answer = run("choose ggx:ax=.15,ay=.4,F0=.9/.6/.3 --for three --seconds 5 --json");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    const Json document = Json::parse(answer.out);
+    const Json& row = document["rows"][document["recommended"].get<std::size_t>()];
+    EXPECT_EQ(row["kind"], "gltf");
+    EXPECT_LT(row["picture"]["flip"]["mean"].get<double>(), 0.01);
+}
+
 TEST_F(ChooseCommand, LeavesOutWhatTheTimeIsTooShortFor) {
     expectError("choose ggx:alpha=.4 --seconds 0.01", 4, "of 0.01 are spent", 0);
 }
