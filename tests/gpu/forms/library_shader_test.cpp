@@ -124,16 +124,20 @@ void prove(Language language, const gpu::SharedSums& all, double bound) {
             FAIL() << reason.what();
         }
         const auto brdf = ml::open(library(), library().materials[n], "material");
-        double worst = 0;
+        double worst = 0, sum = 0;
         for (std::size_t k = 0; k < job.pairs.wo.size(); ++k) {
             const Direction& wi = job.pairs.wi[k];
             std::vector<double> f(brdf->channels().count());
             brdf->eval(job.pairs.wo[k], {&wi.x, &wi.y, &wi.z, 1}, f.data());
             f.resize(3, f[0]);
-            for (std::size_t c = 0; c < 3; ++c)
-                worst = std::max(worst, std::abs(found[6 * k + c] - f[c]) / (0.01 + f[c]));
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double error = std::abs(found[6 * k + c] - f[c]) / (0.01 + f[c]);
+                worst = std::max(worst, error);
+                sum += error;
+            }
         }
-        std::cout << fmt::format("{} {:.1e}\n", library().materials[n].name, worst);
+        std::cout << fmt::format("{} mean {:.1e}, largest {:.1e}\n", library().materials[n].name,
+                                 sum / static_cast<double>(3 * job.pairs.wo.size()), worst);
         EXPECT_LE(worst, bound) << library().materials[n].name;
     }
 }
