@@ -154,20 +154,23 @@ std::vector<Candidate> formulaCandidates(const CandidateSource& source) {
     return candidates;
 }
 
-std::vector<Candidate> formulaCandidates(const CandidateSource& source,
-                                         const std::vector<std::string>& kinds) {
-    const auto asked = [&](std::string_view kind) {
-        return std::ranges::find(kinds, kind) != kinds.end();
-    };
+void requireFormulaKinds(const std::vector<std::string>& kinds) {
     for (const std::string& kind : kinds) {
         const bool known =
             std::ranges::find(kindTable, kind, &CandidateKind::name) != std::end(kindTable);
         if (!known && kind != "none")
             throw spelling::unknown("formula", kind, spelling::namesOf(formulaKinds()));
+        if (kind == "none" && kinds.size() > 1)
+            throw UsageError("'none' stands alone: no formula is measured with it");
     }
-    if (asked("none")) return {};
+}
+
+std::vector<Candidate> formulaCandidates(const CandidateSource& source,
+                                         const std::vector<std::string>& kinds) {
     std::vector<Candidate> all = formulaCandidates(source);
-    std::erase_if(all, [&](const Candidate& candidate) { return !asked(candidate.kind); });
+    std::erase_if(all, [&](const Candidate& candidate) {
+        return std::ranges::find(kinds, candidate.kind) == kinds.end();
+    });
     return all;
 }
 

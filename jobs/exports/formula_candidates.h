@@ -33,7 +33,9 @@ std::vector<Word> formulaWords();  ///< with "none"
 
 /// Their candidates for a source: the model itself only where the source is one of models.
 std::vector<choice::Candidate> formulaCandidates(const CandidateSource& source);
-/// Those of some kinds; "none": none. Throws UsageError that lists the known kinds.
+/// Throws UsageError for a kind that is not known, and for "none" beside others.
+void requireFormulaKinds(const std::vector<std::string>& kinds);
+/// The candidates of some kinds; "none": none.
 std::vector<choice::Candidate> formulaCandidates(const CandidateSource& source,
                                                  const std::vector<std::string>& kinds);
 

@@ -30,6 +30,7 @@ std::vector<plan::SeenMaterial> seenIn(const scene::Scene& read) {
 
 plan::Plan planScene(const std::string& path, const std::string& output,
                      const plan::PlanOptions& options, const Listener& listener) {
+    requireFormulaKinds(options.formulas);
     const scene::Scene read = scene::readScene(path, scene::Purpose::plan);
     if (read.limits.nanoseconds && !options.byTime) {
         listener.say(

@@ -98,7 +98,9 @@ void measureAll(MeasuredTradeoffs& result, const TradeoffOptions& options, FileS
 
 MeasuredTradeoffs measureTradeoffs(const std::vector<std::string>& specs, const std::string& output,
                                    const TradeoffOptions& options, const Listener& listener) {
-    measurementOf(options);  // a word that is none fails before any file is opened
+    // Words that are none fail before any file is opened.
+    measurementOf(options);
+    requireFormulaKinds(options.formulas);
     MeasuredTradeoffs result{.specs = expandInputs(specs)};
     if (!options.writePairs.empty() && result.specs.size() > 1) {
         throw UsageError(fmt::format("{} holds the values of one BRDF: give one SPEC",

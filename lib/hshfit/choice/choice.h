@@ -17,8 +17,8 @@ struct ChoiceOptions {
     std::optional<std::size_t> bytes = {};
     /// The mean FLIP that a faithful row has at most. Where it is stated, no other is recommended.
     std::optional<double> error = {};
-    /// Cycles of an AMD GPU for a wave of 64 threads, at most (ShaderCost); rows of which none are
-    /// known keep to it.
+    /// Cycles of an AMD GPU for a wave of 64 threads, at most (ShaderCost); a row whose cost is not
+    /// known keeps to it.
     std::optional<std::uint64_t> cycles = {};
     /// Processor time of all candidates: one that would exceed it is left out.
     double cpuSeconds = 50;

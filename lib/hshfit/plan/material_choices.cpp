@@ -145,7 +145,7 @@ std::optional<Accepted> MaterialSearch::accept(const Rung& rung) {
     const auto again = reconstruct(result.representation, open_);
     result.pairs = summaryOf(*version.brdf, *again);
     result.picture = pictureError(*version.brdf, *again);
-    result.cost = costOf(result.representation);
+    if (costs_) result.cost = costs_->of(result.representation);
     return result;
 }
 

@@ -256,15 +256,6 @@ MaterialPlan MaterialSearch::run() {
     return std::move(plan_);
 }
 
-std::optional<gpu::ShaderCost> MaterialSearch::costOf(const Representation& representation) const {
-    if (!costs_) return std::nullopt;
-    try {
-        return costs_->of(gpu::timedShader(representation));
-    } catch (const UsageError&) {
-        return std::nullopt;  // a form without a shader of its own
-    }
-}
-
 void MaterialSearch::measureFormulas() {
     if (!options_.makeFormulas) return;
     const Version& whole = versions_.front();

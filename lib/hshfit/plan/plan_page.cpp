@@ -61,7 +61,7 @@ data choiceRows(const MaterialPlan& plan) {
     return rows;
 }
 
-data formulaRows(const MaterialPlan& plan) {
+data formulaRows(const MaterialPlan& plan, bool costs) {
     data rows{data::type::list};
     for (const PlannedFormula& formula : plan.formulas) {
         data row("formula", formula.row.name);
@@ -69,7 +69,9 @@ data formulaRows(const MaterialPlan& plan) {
         row.set("formulaBytes", std::to_string(formula.row.made.bytes));
         row.set("formulaError", errorText(formula.verified));
         row.set("flip", fmt::format("{:.3f}", formula.row.picture.flip.mean));
+        row.set("largest", fmt::format("{:.3f}", formula.row.picture.flip.largest));
         row.set("lost", formula.row.lost);
+        if (costs) row.set("cycles", choice::cyclesText(formula.row.cost));
         const std::string command = choice::commandLineOf(formula.row);
         row.set("madeBy", command.empty() ? withoutFolders(formula.row.made.spec) : command);
         rows.push_back(row);
@@ -104,7 +106,7 @@ data bandRows(const std::vector<double>& power) {
     return rows;
 }
 
-data materialData(const MaterialPlan& plan) {
+data materialData(const MaterialPlan& plan, bool costs) {
     const Material& material = plan.material;
     data entry("name", material.name);
     entry.set("brdf", withoutFolders(material.brdf));
@@ -121,7 +123,7 @@ data materialData(const MaterialPlan& plan) {
     entry.set("rules", listOf(plan.rules));
     entry.set("choices", choiceRows(plan));
     entry.set("hasChoices", plan.accepted.has_value() || !plan.cheaper.empty());
-    entry.set("formulas", formulaRows(plan));
+    entry.set("formulas", formulaRows(plan, costs));
     entry.set("hasFormulas", !plan.formulas.empty());
     entry.set("bands", bandRows(plan.lightPower));
     entry.set("planned", plan.accepted.has_value());
@@ -131,6 +133,7 @@ data materialData(const MaterialPlan& plan) {
         entry.set("times", timesSmaller(accepted.choice.bytes));
         entry.set("verified", errorText(accepted.verified));
         entry.set("file", material.name + ".json");
+        if (accepted.cost) entry.set("shader", choice::cyclesText(accepted.cost));
         entry.set("elevations", elevationRows(accepted, material.budget.error));
     } else {
         entry.set("refused", plan.refused);
@@ -152,9 +155,11 @@ std::string planPage(const Plan& plan) {
     page.set("tangent", views.anyTangent ? "turned in any way" : "fixed");
     page.set("limit", std::to_string(plan.scene.limits.bytes));
     page.set("lights", std::to_string(plan.scene.lights.size()));
+    if (plan.costs) page.set("scale", choice::scaleText(*plan.costs));
     page.set("baseline", std::to_string(baselineBytes));
     data materials{data::type::list};
-    for (const MaterialPlan& each : plan.materials) materials.push_back(materialData(each));
+    for (const MaterialPlan& each : plan.materials)
+        materials.push_back(materialData(each, plan.costs.has_value()));
     page.set("materials", materials);
     return filledPage(embedded::plan_html, page);
 }

@@ -28,11 +28,11 @@ std::string formulaText(const MaterialPlan& plan) {
     if (best == plan.formulas.end()) return "";
     const std::string command = choice::commandLineOf(best->row);
     return fmt::format(
-        "  {}: {}, {} bytes{}, error {:.3g}, FLIP {:.3f}\n    {}\n",
+        "  {}: {}, {} bytes{}, error {:.3g}, FLIP {:.3f} ({:.3f} at most)\n    {}\n",
         best->within ? "as a formula" : "no formula keeps to the budget; the nearest",
         best->row.name, best->row.made.bytes,
         best->row.cost ? fmt::format(", {} cycles", best->row.cost->cycles) : "", best->verified,
-        best->row.picture.flip.mean,
+        best->row.picture.flip.mean, best->row.picture.flip.largest,
         command.empty() ? "no file is needed: " + best->row.made.spec : command);
 }
 

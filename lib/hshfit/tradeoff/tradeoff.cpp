@@ -258,13 +258,8 @@ void timeShadersOfFronts(Tradeoff& trade, const Maker& maker, const gpu::DeviceC
 
 void costFronts(Tradeoff& trade, const Maker& maker, const gpu::ShaderCosts& costs) {
     trade.costs = {costs.device(), costs.ggx()};
-    for (const std::size_t k : onFronts(trade)) {
-        try {
-            trade.forms[k].cost = costs.of(gpu::timedShader(maker.make(trade.forms[k].form)));
-        } catch (const UsageError&) {
-            trade.forms[k].cost.reset();  // a form without a shader of its own
-        }
-    }
+    for (const std::size_t k : onFronts(trade))
+        trade.forms[k].cost = costs.of(maker.make(trade.forms[k].form));
 }
 
 void measureFormulas(Tradeoff& trade, const Brdf& brdf, const PairReference& reference,

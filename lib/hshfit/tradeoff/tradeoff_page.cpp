@@ -133,6 +133,7 @@ data formulaTableOf(const Tradeoff& trade) {
         row.set("bytes", std::to_string(formula.made.bytes));
         row.set("error", numberText(trade.formulaErrorOf(k)));
         row.set("flip", fmt::format("{:.3f}", formula.picture.flip.mean));
+        row.set("largest", fmt::format("{:.3f}", formula.picture.flip.largest));
         row.set("lost", formula.lost);
         if (trade.costs) row.set("cycles", choice::cyclesText(formula.cost));
         const std::string command = choice::commandLineOf(formula);

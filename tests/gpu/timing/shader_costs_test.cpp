@@ -18,7 +18,11 @@ protected:
         try {
             costs_ = std::make_unique<gpu::ShaderCosts>();
         } catch (const NumericError& error) {
-            GTEST_SKIP() << error.what();
+            const std::string reason = error.what();
+            const bool missing = reason.find("mesa-vulkan-drivers") != reason.npos ||
+                                 reason.find("built without Vulkan") != reason.npos;
+            ASSERT_TRUE(missing) << reason;
+            GTEST_SKIP() << reason;
         }
     }
     const gpu::ShaderCosts& costs() const { return *costs_; }

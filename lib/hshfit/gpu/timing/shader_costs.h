@@ -3,6 +3,7 @@
 #include <hshfit/gpu/timing/timed_shader.h>
 #include <hshfit/gpu/vulkan/cost.h>
 
+#include <optional>
 #include <string>
 
 namespace hshfit::gpu::inline timing {
@@ -19,6 +20,8 @@ public:
 
     /// Throws NumericError for a shader that does not compile.
     ShaderCost of(const TimedShader& shader) const;
+    /// The same of a form; none where it has no shader of its own.
+    std::optional<ShaderCost> of(const Representation& form) const;
 
 private:
     AmdCompiler compiler_;

@@ -76,7 +76,6 @@ private:
     double leastFloor() const;
     void refuse();
     void measureFormulas();
-    std::optional<gpu::ShaderCost> costOf(const Representation& representation) const;
 
     const Scene& scene_;
     const BrdfOpener& open_;
