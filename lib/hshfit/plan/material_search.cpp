@@ -262,16 +262,16 @@ void MaterialSearch::measureFormulas() {
     const std::vector<choice::Candidate> candidates =
         options_.makeFormulas(*whole.brdf, plan_.material, options_.formulas);
     if (candidates.empty()) return;
-    const double budget = plan_.material.budget.error;
+    const Budget& budget = plan_.material.budget;
     const choice::RowMeasurement measurement(*whole.brdf, {}, costs_);
     for (choice::Row& row : choice::measureRows(measurement, candidates).rows) {
         const Brdf& brdf = row.made.brdf ? *row.made.brdf : *whole.brdf;
         const double error = light_->errorOf(light_->radianceOf(brdf));
         const double verified = verify(scene_, plan_.material, *whole.brdf, brdf).error;
-        plan_.formulas.push_back({.row = std::move(row),
-                                  .error = error,
-                                  .verified = verified,
-                                  .within = error <= budget && verified <= budget});
+        const bool within = std::max(error, verified) <= budget.error &&
+                            (!budget.flip || row.picture.flip.mean <= *budget.flip);
+        plan_.formulas.push_back(
+            {.row = std::move(row), .error = error, .verified = verified, .within = within});
     }
 }
 

@@ -21,6 +21,7 @@ struct Choice {
     double tolerance = 0;  ///< of the projection; 0 where the form has none
     std::size_t bytes = 0;
     double error = 0;                        ///< the budget's measure
+    std::optional<OverLights> flip = {};     ///< if the budget bounds it; not of Accepted
     std::optional<double> nanoseconds = {};  ///< per pair; only if times are measured
 };
 
@@ -34,7 +35,7 @@ struct Accepted {
     /// Against the material over both hemispheres, whatever the light.
     PairSummary pairs = {};
     PictureError picture = {};                 ///< of the file against the material
-    std::size_t raised = 0;                    ///< cheaper choices that failed only this check
+    std::size_t raised = 0;                    ///< cheaper choices that only these checks refused
     std::optional<gpu::ShaderCost> cost = {};  ///< if asked for, and it has a shader
 };
 
@@ -43,7 +44,7 @@ struct PlannedFormula {
     choice::Row row;
     double error = 0;     ///< the budget's measure
     double verified = 0;  ///< as of Accepted
-    bool within = false;  ///< both keep to the budget
+    bool within = false;  ///< both, and the picture, keep to the budget
 };
 
 struct MaterialPlan {
@@ -93,7 +94,9 @@ struct PlanOptions {
 ///
 /// Choices are tried from few bytes to many (ladder.h) with outgoing radiance by quadrature
 /// that follows the lights. The first within the budget is projected in full and verified by
-/// `latticeSamples` at other views; if that fails, the search goes on. The same scene gives the
+/// `latticeSamples` at other views; if that fails, the search goes on. Where the budget bounds
+/// FLIP too, pictures of forms within the other bound are drawn until it is certain that they
+/// exceed it (PictureReference::flipWithin). The same scene gives the
 /// same plan, unless times are measured. A material without a plan has a reason.
 /// Throws UsageError for a basis that is not orthonormal or a spectral material, InputError for one
 /// that cannot be opened.

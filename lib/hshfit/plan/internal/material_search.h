@@ -60,8 +60,14 @@ private:
     double floorOf(const Rung& rung);
     /// The error of the rung before its numbers are rounded.
     std::optional<double> unroundedError(const Rung& rung);
+    /// Whether pictures of the rung's form, of kept projections, keep to the budget.
+    bool looksRight(const Rung& rung);
+    /// The source's pictures, drawn at the first call.
+    const PictureReference& pictures();
     double toleranceOf(const Form& form) const;
     Choice choiceOf(const Rung& rung, double error) const;
+    /// The choice with its FLIP, if the budget bounds it.
+    Choice shownChoice(const Rung& rung, double error);
     /// Projects as the command does and verifies by lattice points; none if verification fails.
     std::optional<Accepted> accept(const Rung& rung);
 
@@ -89,6 +95,8 @@ private:
     std::map<std::string, std::optional<double>> errors_;  ///< by source and form
     std::vector<double> lightBands_;                       ///< [l]: power of f's light in HSH
     int usefulOrder_ = 0;
+    std::optional<PictureReference> pictures_;
+    std::map<std::string, bool> looksRight_;  ///< by source and form
     std::string lastFailure_;
 };
 
