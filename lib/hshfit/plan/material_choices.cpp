@@ -195,7 +195,7 @@ bool MaterialSearch::makeWay(std::size_t place) {
 
 std::optional<std::size_t> MaterialSearch::firstWithin(std::size_t from) {
     const double budget = plan_.material.budget.error;
-    for (std::size_t i = from; i < rungs_.size();) {
+    for (std::size_t i = from; i < rungs_.size() && !limit_.isOver();) {
         const bool within = floorOf(rungs_[i]) <= floorSlack * budget &&
                             unroundedError(rungs_[i]).value_or(never) <= budget &&
                             errorOf(rungs_[i]).value_or(never) <= budget &&
@@ -219,6 +219,16 @@ void MaterialSearch::takeCheapest() {
             return;
         }
     }
+}
+
+void MaterialSearch::takeLarge() {
+    const auto last = std::find_if(rungs_.rbegin(), rungs_.rend(), [](const Rung& rung) {
+        return rung.form.kind == Representation::Kind::halfway &&
+               rung.form.precision == Precision::half && rung.source == 0;
+    });
+    if (last == rungs_.rend()) return;
+    plan_.accepted = accept(*last);
+    if (plan_.accepted) findNeighbours(static_cast<std::size_t>(rungs_.rend() - last) - 1);
 }
 
 void MaterialSearch::takeFastest() {
@@ -263,7 +273,7 @@ void MaterialSearch::findNeighbours(std::size_t chosen) {
     double least = never;
     for (std::size_t i = 0; i < rungs_.size(); ++i) {
         if (plan_.accepted && rungs_[i].bytes >= rungs_[chosen].bytes) break;
-        if (!plan_.accepted && !wasTried(rungs_[i])) continue;
+        if ((!plan_.accepted || plan_.cut) && !wasTried(rungs_[i])) continue;
         const double floor = floorOf(rungs_[i]);
         if (!(floor < least)) continue;
         const double error = errorOf(rungs_[i]).value_or(never);
@@ -275,7 +285,7 @@ void MaterialSearch::findNeighbours(std::size_t chosen) {
     for (std::size_t k = first; k < front.size(); ++k) {
         plan_.cheaper.push_back(shownChoice(rungs_[front[k]], *errorOf(rungs_[front[k]])));
     }
-    if (!plan_.accepted) return;
+    if (!plan_.accepted || plan_.cut) return;
     const double wanted = plan_.accepted->choice.error / 2;
     const std::size_t enough = plan_.tried + mostTriedDearer;
     for (std::size_t i = chosen + 1; i < rungs_.size() && plan_.tried < enough; ++i) {

@@ -53,8 +53,9 @@ std::vector<double> cut(const double* rows, std::size_t channels, std::size_t sl
 }  // namespace
 
 MaterialSearch::MaterialSearch(const Scene& scene, const Material& material, const BrdfOpener& open,
-                               const PlanOptions& options, const gpu::ShaderCosts* costs)
-    : scene_(scene), open_(open), options_(options), costs_(costs) {
+                               const PlanOptions& options, const gpu::ShaderCosts* costs,
+                               const TimeLimit& limit)
+    : scene_(scene), open_(open), options_(options), costs_(costs), limit_(limit) {
     plan_.material = material;
     ladderOptions_ = {.bases = options.bases,
                       .maxOrder = options.maxOrder,
@@ -251,6 +252,8 @@ MaterialPlan MaterialSearch::run() {
     } else {
         takeCheapest();
     }
+    plan_.cut = !plan_.accepted && limit_.isOver();
+    if (plan_.cut) takeLarge();
     if (!plan_.accepted) refuse();
     measureFormulas();
     return std::move(plan_);

@@ -61,6 +61,7 @@ struct MaterialPlan {
     std::vector<std::string> rules;    ///< simplifications that the scene allows
     std::vector<double> lightPower;    ///< [l]: share of cos-weighted light in HSH band l
     std::size_t rungs = 0, tried = 0;
+    bool cut = false;  ///< the time was over before all cheaper forms had been tried
     std::size_t lightSamples = 0, views = 0;
     double referenceError = 0;  ///< change of L over the last two levels of light sampling
 };
@@ -87,6 +88,8 @@ struct PlanOptions {
     std::vector<std::string> formulas = {"model", "lobes"};  ///< kinds to measure beside the forms
     FormulaMaker makeFormulas = {};                          ///< none: no formulas
     bool byTime = false;  ///< measure nanoseconds and choose the fastest form within the budget
+    /// For the searches together. A large halfway form is made after it where none was found.
+    std::optional<double> seconds = {};
     std::function<void(std::size_t, std::size_t)> progress = {};
 };
 

@@ -110,7 +110,7 @@ Json materialJson(const MaterialPlan& plan) {
                      {"samples", plan.lightSamples},
                      {"sampling_error", finiteOrNull(plan.referenceError)}};
     json["views"] = plan.views;
-    json["forms"] = {{"listed", plan.rungs}, {"tried", plan.tried}};
+    json["forms"] = {{"listed", plan.rungs}, {"tried", plan.tried}, {"cut", plan.cut}};
     return json;
 }
 

@@ -133,6 +133,7 @@ data materialData(const MaterialPlan& plan, bool costs) {
     entry.set("samplingError", errorText(plan.referenceError));
     entry.set("rungs", std::to_string(plan.rungs));
     entry.set("tried", std::to_string(plan.tried));
+    if (plan.cut) entry.set("cut", true);
     entry.set("rules", listOf(plan.rules));
     entry.set("choices", choiceRows(plan));
     entry.set("hasChoices", plan.accepted.has_value() || !plan.cheaper.empty());

@@ -94,6 +94,10 @@ std::string planText(const Plan& plan) {
                 ? fmt::format(", {:.3g} ns a pair", *accepted.choice.nanoseconds)
                 : "",
             commandOf(accepted.choice, material.name + ".json"));
+        if (each.cut)
+            out += fmt::format(
+                "  the time was over after {} of {} forms: a cheaper one may keep to the budget\n",
+                each.tried, each.rungs);
         out += formulaText(each);
         out += seen;
         if (accepted.cost) out += fmt::format("  its shader: {} cycles\n", accepted.cost->cycles);

@@ -357,6 +357,29 @@ TEST(Plan, PicturesBoundTheFormToo) {
     EXPECT_NE(none.materials[0].refused.find("FLIP"), std::string::npos);
 }
 
+/// Without time to search, a form that keeps to the budget is there all the same.
+TEST(Plan, TakesALargeFormWhereTheTimeIsOver) {
+    const DiscLight lamp{directionFromAngles(0.6, 1), 0.2, grey(1)};
+    Scene scene = smallScene("lambert:kd=0.3+ggx:alpha=0.3,F0=0.2", lamp, 0.05);
+    const Plan plan = planScene(scene, open, {.seconds = 1e-3});
+    const MaterialPlan& cut = plan.materials[0];
+    ASSERT_TRUE(cut.accepted) << cut.refused;
+    EXPECT_TRUE(cut.cut);
+    EXPECT_LT(cut.tried, cut.rungs);
+    EXPECT_LE(cut.accepted->verified, 0.05);
+    EXPECT_NE(planText(plan).find("the time was over after"), std::string::npos);
+    const Plan whole = planScene(scene, open);
+    ASSERT_TRUE(whole.materials[0].accepted);
+    EXPECT_FALSE(whole.materials[0].cut);
+    EXPECT_LT(whole.materials[0].accepted->choice.bytes, cut.accepted->choice.bytes);
+    // No form of so few bytes: said as it is.
+    scene.limits.bytes = 8;
+    const Plan none = planScene(scene, open, {.seconds = 1e-3});
+    EXPECT_FALSE(none.materials[0].accepted);
+    const std::string& reason = none.materials[0].refused;
+    EXPECT_TRUE(reason.starts_with("the time was over after 0 of")) << reason;
+}
+
 TEST(Plan, SmoothLightBoundsTheOrder) {
     const SkyLight sky{SkyLight::Model::uniform, grey(1), {}};
     const Plan plan = planScene(smallScene("phong:exponent=8,ks=0.3", sky, 0.02), open);

@@ -3,6 +3,7 @@
 #include <hshfit/plan/internal/material_light.h>
 #include <hshfit/plan/internal/projections.h>
 #include <hshfit/plan/plan.h>
+#include <hshfit/time_limit.h>
 
 #include <map>
 #include <memory>
@@ -17,7 +18,8 @@ class MaterialSearch {
 public:
     /// Costs are stated where there are `costs`.
     MaterialSearch(const Scene& scene, const Material& material, const BrdfOpener& open,
-                   const PlanOptions& options, const gpu::ShaderCosts* costs);
+                   const PlanOptions& options, const gpu::ShaderCosts* costs,
+                   const TimeLimit& limit);
     ~MaterialSearch();
 
     MaterialPlan run();
@@ -76,7 +78,9 @@ private:
     bool makeWay(std::size_t place);
     void takeCheapest();
     void takeFastest();
-    /// Without an accepted choice, finds the front of all tried rungs.
+    /// The largest halfway form in half, if it keeps to the budget.
+    void takeLarge();
+    /// Without an accepted choice, or time, finds the front of all tried rungs.
     void findNeighbours(std::size_t chosen);
     /// The least truncation error of any linear form.
     double leastFloor() const;
@@ -87,6 +91,7 @@ private:
     const BrdfOpener& open_;
     const PlanOptions& options_;
     const gpu::ShaderCosts* costs_;
+    const TimeLimit limit_;
     MaterialPlan plan_;
     std::vector<Version> versions_;
     std::unique_ptr<MaterialLight> light_;
