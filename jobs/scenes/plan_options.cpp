@@ -18,6 +18,11 @@ constexpr OptionRow planRows[] = {
     OptionRow{"by-time", at<&PlanOptions::byTime>,
               "Of the forms within the budget, the fastest instead of the smallest; what is "
               "measured may differ between runs"},
+    OptionRow{
+        "seconds", at<&PlanOptions::seconds>,
+        "End the searches after that time; a material whose search has not ended takes a large "
+        "halfway form"}
+        .within(bounds::seconds),
 };
 
 }  // namespace

@@ -73,4 +73,8 @@ struct Coefficients : CoefficientHead {
     }
 };
 
+/// The first `order` bands, at most `c.order`. Where the basis is nested, these are its
+/// coefficients of that order.
+Coefficients truncated(const Coefficients& c, int order);
+
 }  // namespace hshfit::inline coefficients

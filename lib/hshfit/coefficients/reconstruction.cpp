@@ -48,7 +48,8 @@ void Reconstruction::eval(const Direction& wo, DirectionBatch wi, double* out) c
 void synthesise(const Basis& basis, std::span<const double> c, DirectionBatch wi, double* out) {
     const std::size_t slots = basis.slots(), channels = c.size() / slots;
     // Blocks keep the basis values in cache whatever the order.
-    const std::size_t block = std::clamp<std::size_t>(65536 / slots, 1, 256);
+    const std::size_t block = std::min(std::clamp<std::size_t>(65536 / slots, 1, 256),
+                                       std::max<std::size_t>(1, wi.count));
     std::vector<double> values(block * slots);
     for (std::size_t first = 0; first < wi.count; first += block) {
         const std::size_t count = std::min(block, wi.count - first);

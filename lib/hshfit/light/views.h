@@ -2,6 +2,7 @@
 
 #include <hshfit/light/lights.h>
 
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -24,12 +25,14 @@ struct ViewRange {
 };
 
 /// The allowed error of outgoing radiance, over views (by solid angle), orientations and channels.
-/// relativeL2  root of the sum of (L' - L)^2 over that of L^2 log         mean |ln(max(L', 0) + e)
-/// - ln(L + e)|, e = 1/100 of the mean of L: what the eye sees
+///     relativeL2  root of the sum of (L' - L)^2 over the sum of L^2
+///     log         mean |ln(max(L', 0) + e) - ln(L + e)|, e = 1/100 of the mean of L
 struct Budget {
     enum class Metric { relativeL2, log };
     Metric metric = Metric::relativeL2;
     double error = 0.05;
+    /// The mean FLIP of spheres in any light (PictureError) at most; none: pictures do not count.
+    std::optional<double> flip = {};
 };
 std::string_view metricName(Budget::Metric metric);  ///< "relative_l2", "log"
 

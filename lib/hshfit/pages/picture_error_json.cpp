@@ -9,10 +9,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json overLightsJson(const OverLights& all) {
-    return {{"mean", all.mean}, {"largest", all.largest}, {"light", all.light}};
-}
-
 Json placeJson(const Direction& d) {
     return {{"theta", degrees(polarAngle(d))}, {"phi", degrees(azimuth(d))}};
 }
@@ -44,6 +40,10 @@ SeenDifference differenceFrom(const Json& json) {
 }
 
 }  // namespace
+
+Json overLightsJson(const OverLights& all) {
+    return {{"mean", all.mean}, {"largest", all.largest}, {"light", all.light}};
+}
 
 PictureError pictureErrorFrom(const Json& json) {
     return {.channels = json["channels"],

@@ -10,6 +10,8 @@ namespace hshfit::inline pages {
 /// directions in degrees.
 nlohmann::ordered_json pictureErrorJson(const PictureError& error);
 
+nlohmann::ordered_json overLightsJson(const OverLights& all);  ///< its "flip" and "ciede2000"
+
 /// The picture error of such an object.
 PictureError pictureErrorFrom(const nlohmann::ordered_json& json);
 

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -126,6 +127,14 @@ OverLights overLights(std::span<const double> values) {
         all.light = pictureLights()[k].name;
     }
     return all;
+}
+
+/// The lights by the time that a picture under them takes.
+enum class Stage { points, discs, domes };
+
+Stage stageOf(const SphereRig& rig) {
+    if (rig.dome > 0) return Stage::domes;
+    return rig.lights.size() == 1 ? Stage::points : Stage::discs;
 }
 
 /// FLIP and CIEDE2000 under one light.
@@ -289,6 +298,27 @@ PictureError PictureReference::errorOf(const Brdf& g) const {
     compareAlbedos(*seen_, other, error);
     compareShapes(*seen_, other, error);
     return error;
+}
+
+std::optional<OverLights> PictureReference::flipWithin(const Brdf& g, double most) const {
+    const std::vector<PictureLight>& lights = pictureLights();
+    std::vector<double> flips(lights.size(), 0.0);
+    std::optional<AlbedoTable> table;
+    const auto draw = [&](std::size_t k) {
+        const SphereOptions options{.rig = lights[k].rig, .size = pixels, .samples = 1};
+        flips[k] = sphereFlip(seen_->spheres[k],
+                              table ? renderSphere(g, *table, options) : renderSphere(g, options));
+    };
+    for (const Stage stage : {Stage::points, Stage::discs, Stage::domes}) {
+        if (stage == Stage::domes) table.emplace(g, AlbedoTable::Detail::coarse);
+        tbb::parallel_for(std::size_t{0}, lights.size(), [&](std::size_t k) {
+            if (stageOf(lights[k].rig) == stage) draw(k);
+        });
+        const double mean =
+            std::accumulate(flips.begin(), flips.end(), 0.0) / static_cast<double>(flips.size());
+        if (mean > most) return {};
+    }
+    return overLights(flips);
 }
 
 PictureError pictureError(const Brdf& f, const Brdf& g) {

@@ -4,6 +4,7 @@
 #include <hshfit/pictures/sphere.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,9 @@ public:
     PictureReference(PictureReference&&) noexcept;
 
     PictureError errorOf(const Brdf& g) const;
+    /// `flip` of `errorOf`, or none where its mean exceeds `most`: lights are drawn, points first
+    /// and those that need albedos last, until that is certain.
+    std::optional<OverLights> flipWithin(const Brdf& g, double most) const;
 
 private:
     std::unique_ptr<const SeenBrdf> seen_;

@@ -31,7 +31,8 @@ Frame frameAt(double x, double y) {
 
 class Shader {
 public:
-    Shader(const Brdf& brdf, const AlbedoTable& albedo, const SphereRig& rig)
+    /// `albedo` is needed under a dome only.
+    Shader(const Brdf& brdf, const AlbedoTable* albedo, const SphereRig& rig)
         : brdf_(brdf),
           albedo_(albedo),
           rig_(rig),
@@ -60,7 +61,7 @@ public:
         }
         if (rig_.dome == 0) return;
         f.resize(channels_);
-        albedo_.at(wo, f);
+        albedo_->at(wo, f);
         addFinite(colour_(f.data(), 1), rig_.dome, sum, notFinite);
     }
 
@@ -76,23 +77,20 @@ private:
     }
 
     const Brdf& brdf_;
-    const AlbedoTable& albedo_;
+    const AlbedoTable* albedo_;
     const SphereRig& rig_;
     const ChannelColours colour_;
     std::size_t channels_;
 };
 
-}  // namespace
-
-SpherePicture renderSphere(const Brdf& brdf, const AlbedoTable& albedo,
-                           const SphereOptions& options) {
+SpherePicture render(const Brdf& brdf, const AlbedoTable* albedo, const SphereOptions& options) {
     const Shader shader(brdf, albedo, options.rig);
     const auto size = static_cast<std::size_t>(options.size);
     SpherePicture picture{.size = options.size,
                           .radiance = std::vector<float>(size * size * 3),
                           .coverage = std::vector<float>(size * size),
                           .colours = shader.colours(),
-                          .notFinite = albedo.notFinite()};
+                          .notFinite = albedo ? albedo->notFinite() : 0};
     std::vector<std::size_t> notFinite(size);
     std::atomic<std::size_t> done = 0;
     const double samples = options.samples, scale = 2 / (options.size * sphereRadius);
@@ -121,7 +119,15 @@ SpherePicture renderSphere(const Brdf& brdf, const AlbedoTable& albedo,
     return picture;
 }
 
+}  // namespace
+
+SpherePicture renderSphere(const Brdf& brdf, const AlbedoTable& albedo,
+                           const SphereOptions& options) {
+    return render(brdf, &albedo, options);
+}
+
 SpherePicture renderSphere(const Brdf& brdf, const SphereOptions& options) {
+    if (options.rig.dome == 0) return render(brdf, nullptr, options);
     return renderSphere(brdf, AlbedoTable(brdf), options);
 }
 

@@ -32,6 +32,11 @@ std::string keyOf(const Rung& rung) {
     return fmt::format("{} {}", rung.source, optionsOf(rung.form));
 }
 
+Rung unrounded(Rung rung) {
+    rung.form.precision = Precision::float64;
+    return rung;
+}
+
 /// For a pair of directions in a batch, on one thread.
 double nanosecondsPerPair(const Representation& representation, const BrdfOpener& open) {
     const auto evaluator = pairEvaluator(representation, open);
@@ -98,9 +103,24 @@ bool MaterialSearch::wasTried(const Rung& rung) const {
 }
 
 std::optional<double> MaterialSearch::unroundedError(const Rung& rung) {
-    Rung unrounded = rung;
-    unrounded.form.precision = Precision::float64;
-    return errorOf(unrounded);
+    return errorOf(unrounded(rung));
+}
+
+const PictureReference& MaterialSearch::pictures() {
+    if (!pictures_) pictures_.emplace(*versions_.front().brdf);
+    return *pictures_;
+}
+
+bool MaterialSearch::looksRight(const Rung& rung) {
+    const std::optional<double> most = plan_.material.budget.flip;
+    if (!most) return true;
+    const auto [found, added] = looksRight_.try_emplace(keyOf(rung), false);
+    if (added) {
+        Part& part = partOf(rung);
+        const auto brdf = reconstruct(represent(*part.kept, rung.form, part.added), open_);
+        found->second = pictures().flipWithin(*brdf, *most).has_value();
+    }
+    return found->second;
 }
 
 /// A hundredth of the budget, since a finer projection would change no digit that is shown.
@@ -116,6 +136,15 @@ Choice MaterialSearch::choiceOf(const Rung& rung, double error) const {
             .tolerance = toleranceOf(rung.form),
             .bytes = rung.bytes,
             .error = error};
+}
+
+Choice MaterialSearch::shownChoice(const Rung& rung, double error) {
+    Choice choice = choiceOf(rung, error);
+    if (!plan_.material.budget.flip) return choice;
+    Part& part = partOf(rung);
+    const auto brdf = reconstruct(represent(*part.kept, rung.form, part.added), open_);
+    choice.flip = pictures().flipWithin(*brdf, never);
+    return choice;
 }
 
 std::optional<Accepted> MaterialSearch::accept(const Rung& rung) {
@@ -137,14 +166,15 @@ std::optional<Accepted> MaterialSearch::accept(const Rung& rung) {
     result.verified = check.error;
     result.thetas = check.thetas;
     result.errors = check.byElevation;
-    const double budget = plan_.material.budget.error;
-    const bool holds = result.choice.error <= budget && result.verified <= budget &&
+    const Budget& budget = plan_.material.budget;
+    const bool holds = result.choice.error <= budget.error && result.verified <= budget.error &&
                        result.choice.bytes <= scene_.limits.bytes;
     if (!holds) known = std::max(result.choice.error, result.verified);
     if (!holds) return std::nullopt;
     const auto again = reconstruct(result.representation, open_);
+    result.picture = pictures().errorOf(*again);
+    if (result.picture.flip.mean > budget.flip.value_or(never)) return std::nullopt;
     result.pairs = summaryOf(*version.brdf, *again);
-    result.picture = pictureError(*version.brdf, *again);
     if (costs_) result.cost = costs_->of(result.representation);
     return result;
 }
@@ -165,10 +195,11 @@ bool MaterialSearch::makeWay(std::size_t place) {
 
 std::optional<std::size_t> MaterialSearch::firstWithin(std::size_t from) {
     const double budget = plan_.material.budget.error;
-    for (std::size_t i = from; i < rungs_.size();) {
+    for (std::size_t i = from; i < rungs_.size() && !limit_.isOver();) {
         const bool within = floorOf(rungs_[i]) <= floorSlack * budget &&
                             unroundedError(rungs_[i]).value_or(never) <= budget &&
-                            errorOf(rungs_[i]).value_or(never) <= budget;
+                            errorOf(rungs_[i]).value_or(never) <= budget &&
+                            looksRight(unrounded(rungs_[i])) && looksRight(rungs_[i]);
         if (!within) {
             ++i;
         } else if (!makeWay(i)) {
@@ -188,6 +219,16 @@ void MaterialSearch::takeCheapest() {
             return;
         }
     }
+}
+
+void MaterialSearch::takeLarge() {
+    const auto last = std::find_if(rungs_.rbegin(), rungs_.rend(), [](const Rung& rung) {
+        return rung.form.kind == Representation::Kind::halfway &&
+               rung.form.precision == Precision::half && rung.source == 0;
+    });
+    if (last == rungs_.rend()) return;
+    plan_.accepted = accept(*last);
+    if (plan_.accepted) findNeighbours(static_cast<std::size_t>(rungs_.rend() - last) - 1);
 }
 
 void MaterialSearch::takeFastest() {
@@ -232,7 +273,7 @@ void MaterialSearch::findNeighbours(std::size_t chosen) {
     double least = never;
     for (std::size_t i = 0; i < rungs_.size(); ++i) {
         if (plan_.accepted && rungs_[i].bytes >= rungs_[chosen].bytes) break;
-        if (!plan_.accepted && !wasTried(rungs_[i])) continue;
+        if ((!plan_.accepted || plan_.cut) && !wasTried(rungs_[i])) continue;
         const double floor = floorOf(rungs_[i]);
         if (!(floor < least)) continue;
         const double error = errorOf(rungs_[i]).value_or(never);
@@ -242,9 +283,9 @@ void MaterialSearch::findNeighbours(std::size_t chosen) {
     }
     const std::size_t first = front.size() - std::min(front.size(), shownCheaper);
     for (std::size_t k = first; k < front.size(); ++k) {
-        plan_.cheaper.push_back(choiceOf(rungs_[front[k]], *errorOf(rungs_[front[k]])));
+        plan_.cheaper.push_back(shownChoice(rungs_[front[k]], *errorOf(rungs_[front[k]])));
     }
-    if (!plan_.accepted) return;
+    if (!plan_.accepted || plan_.cut) return;
     const double wanted = plan_.accepted->choice.error / 2;
     const std::size_t enough = plan_.tried + mostTriedDearer;
     for (std::size_t i = chosen + 1; i < rungs_.size() && plan_.tried < enough; ++i) {
@@ -252,7 +293,7 @@ void MaterialSearch::findNeighbours(std::size_t chosen) {
         if (floorOf(rungs_[i]) > wanted) continue;
         const double error = errorOf(rungs_[i]).value_or(never);
         if (error > wanted) continue;
-        plan_.dearer = choiceOf(rungs_[i], error);
+        plan_.dearer = shownChoice(rungs_[i], error);
         return;
     }
 }

@@ -53,8 +53,9 @@ std::vector<double> cut(const double* rows, std::size_t channels, std::size_t sl
 }  // namespace
 
 MaterialSearch::MaterialSearch(const Scene& scene, const Material& material, const BrdfOpener& open,
-                               const PlanOptions& options, const gpu::ShaderCosts* costs)
-    : scene_(scene), open_(open), options_(options), costs_(costs) {
+                               const PlanOptions& options, const gpu::ShaderCosts* costs,
+                               const TimeLimit& limit)
+    : scene_(scene), open_(open), options_(options), costs_(costs), limit_(limit) {
     plan_.material = material;
     ladderOptions_ = {.bases = options.bases,
                       .maxOrder = options.maxOrder,
@@ -251,6 +252,8 @@ MaterialPlan MaterialSearch::run() {
     } else {
         takeCheapest();
     }
+    plan_.cut = !plan_.accepted && limit_.isOver();
+    if (plan_.cut) takeLarge();
     if (!plan_.accepted) refuse();
     measureFormulas();
     return std::move(plan_);
@@ -262,16 +265,16 @@ void MaterialSearch::measureFormulas() {
     const std::vector<choice::Candidate> candidates =
         options_.makeFormulas(*whole.brdf, plan_.material, options_.formulas);
     if (candidates.empty()) return;
-    const double budget = plan_.material.budget.error;
+    const Budget& budget = plan_.material.budget;
     const choice::RowMeasurement measurement(*whole.brdf, {}, costs_);
     for (choice::Row& row : choice::measureRows(measurement, candidates).rows) {
         const Brdf& brdf = row.made.brdf ? *row.made.brdf : *whole.brdf;
         const double error = light_->errorOf(light_->radianceOf(brdf));
         const double verified = verify(scene_, plan_.material, *whole.brdf, brdf).error;
-        plan_.formulas.push_back({.row = std::move(row),
-                                  .error = error,
-                                  .verified = verified,
-                                  .within = error <= budget && verified <= budget});
+        const bool within = std::max(error, verified) <= budget.error &&
+                            (!budget.flip || row.picture.flip.mean <= *budget.flip);
+        plan_.formulas.push_back(
+            {.row = std::move(row), .error = error, .verified = verified, .within = within});
     }
 }
 

@@ -21,9 +21,10 @@ void requireUsable(const std::vector<std::string>& names) {
 }
 
 MaterialPlan planMaterial(const Scene& scene, const Material& material, const BrdfOpener& open,
-                          const PlanOptions& options, const gpu::ShaderCosts* costs) {
+                          const PlanOptions& options, const gpu::ShaderCosts* costs,
+                          const TimeLimit& limit) {
     try {
-        return MaterialSearch(scene, material, open, options, costs).run();
+        return MaterialSearch(scene, material, open, options, costs, limit).run();
     } catch (const Error& error) {
         const std::string_view message = error.what();
         if (message.find(scene.file) != std::string_view::npos) throw;
@@ -43,11 +44,13 @@ Plan planScene(const Scene& given, const BrdfOpener& open, const PlanOptions& op
     const bool cameras = options.seen.size() == scene.materials.size();
     if (cameras) takeSeen(scene, options.seen);
     Scene own = scene;
+    const TimeLimit limit(options.seconds);
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
         const Material& material = scene.materials[m];
         own.views = material.views.value_or(scene.views);
-        plan.materials.push_back(
-            planMaterial(own, material, open, options, costs ? &*costs : nullptr));
+        const double left = static_cast<double>(scene.materials.size() - m);
+        plan.materials.push_back(planMaterial(own, material, open, options,
+                                              costs ? &*costs : nullptr, limit.share(left)));
         if (cameras) plan.materials.back().seen = options.seen[m];
         if (options.progress) options.progress(plan.materials.size(), scene.materials.size());
     }

@@ -21,6 +21,7 @@ struct Choice {
     double tolerance = 0;  ///< of the projection; 0 where the form has none
     std::size_t bytes = 0;
     double error = 0;                        ///< the budget's measure
+    std::optional<OverLights> flip = {};     ///< if the budget bounds it; not of Accepted
     std::optional<double> nanoseconds = {};  ///< per pair; only if times are measured
 };
 
@@ -34,7 +35,7 @@ struct Accepted {
     /// Against the material over both hemispheres, whatever the light.
     PairSummary pairs = {};
     PictureError picture = {};                 ///< of the file against the material
-    std::size_t raised = 0;                    ///< cheaper choices that failed only this check
+    std::size_t raised = 0;                    ///< cheaper choices that only these checks refused
     std::optional<gpu::ShaderCost> cost = {};  ///< if asked for, and it has a shader
 };
 
@@ -43,7 +44,7 @@ struct PlannedFormula {
     choice::Row row;
     double error = 0;     ///< the budget's measure
     double verified = 0;  ///< as of Accepted
-    bool within = false;  ///< both keep to the budget
+    bool within = false;  ///< both, and the picture, keep to the budget
 };
 
 struct MaterialPlan {
@@ -60,6 +61,7 @@ struct MaterialPlan {
     std::vector<std::string> rules;    ///< simplifications that the scene allows
     std::vector<double> lightPower;    ///< [l]: share of cos-weighted light in HSH band l
     std::size_t rungs = 0, tried = 0;
+    bool cut = false;  ///< the time was over before all cheaper forms had been tried
     std::size_t lightSamples = 0, views = 0;
     double referenceError = 0;  ///< change of L over the last two levels of light sampling
 };
@@ -86,6 +88,8 @@ struct PlanOptions {
     std::vector<std::string> formulas = {"model", "lobes"};  ///< kinds to measure beside the forms
     FormulaMaker makeFormulas = {};                          ///< none: no formulas
     bool byTime = false;  ///< measure nanoseconds and choose the fastest form within the budget
+    /// For the searches together. A large halfway form is made after it where none was found.
+    std::optional<double> seconds = {};
     std::function<void(std::size_t, std::size_t)> progress = {};
 };
 
@@ -93,7 +97,9 @@ struct PlanOptions {
 ///
 /// Choices are tried from few bytes to many (ladder.h) with outgoing radiance by quadrature
 /// that follows the lights. The first within the budget is projected in full and verified by
-/// `latticeSamples` at other views; if that fails, the search goes on. The same scene gives the
+/// `latticeSamples` at other views; if that fails, the search goes on. Where the budget bounds
+/// FLIP too, pictures of forms within the other bound are drawn until it is certain that they
+/// exceed it (PictureReference::flipWithin). The same scene gives the
 /// same plan, unless times are measured. A material without a plan has a reason.
 /// Throws UsageError for a basis that is not orthonormal or a spectral material, InputError for one
 /// that cannot be opened.

@@ -22,6 +22,7 @@ Json choiceJson(const Choice& choice, const std::string& file) {
                  {"command", commandOf(choice, file)},
                  {"bytes", choice.bytes},
                  {"error", finiteOrNull(choice.error)}};
+    if (choice.flip) json["flip"] = overLightsJson(*choice.flip);
     if (choice.nanoseconds) json["nanoseconds"] = *choice.nanoseconds;
     return json;
 }
@@ -43,6 +44,12 @@ Json acceptedJson(const Accepted& accepted, const std::string& file) {
             {{"theta", degrees(accepted.thetas[k])}, {"error", finiteOrNull(accepted.errors[k])}});
     }
     json["error_by_elevation"] = rows;
+    return json;
+}
+
+Json budgetJson(const Budget& budget) {
+    Json json = {{"metric", metricName(budget.metric)}, {"error", budget.error}};
+    if (budget.flip) json["flip"] = *budget.flip;
     return json;
 }
 
@@ -83,13 +90,11 @@ Json seenJson(const SeenMaterial& seen) {
 Json materialJson(const MaterialPlan& plan) {
     const Material& material = plan.material;
     const std::string file = material.name + ".json";
-    Json json = {
-        {"name", material.name},
-        {"brdf", material.brdf},
-        {"budget",
-         {{"metric", metricName(material.budget.metric)}, {"error", material.budget.error}}},
-        {"orientations", material.orientations.size()},
-        {"planned", plan.accepted.has_value()}};
+    Json json = {{"name", material.name},
+                 {"brdf", material.brdf},
+                 {"budget", budgetJson(material.budget)},
+                 {"orientations", material.orientations.size()},
+                 {"planned", plan.accepted.has_value()}};
     if (plan.accepted) json["choice"] = acceptedJson(*plan.accepted, file);
     json["cheaper"] = Json::array();
     for (const Choice& each : plan.cheaper) json["cheaper"].push_back(choiceJson(each, file));
@@ -105,7 +110,7 @@ Json materialJson(const MaterialPlan& plan) {
                      {"samples", plan.lightSamples},
                      {"sampling_error", finiteOrNull(plan.referenceError)}};
     json["views"] = plan.views;
-    json["forms"] = {{"listed", plan.rungs}, {"tried", plan.tried}};
+    json["forms"] = {{"listed", plan.rungs}, {"tried", plan.tried}, {"cut", plan.cut}};
     return json;
 }
 

@@ -39,13 +39,14 @@ data listOf(const std::vector<std::string>& texts) {
     return list;
 }
 
-data choiceRow(const std::string& label, const Choice& choice, const std::string& file,
-               bool chosen) {
+data choiceRow(const std::string& label, const Choice& choice, std::optional<double> flip,
+               const std::string& file, bool chosen) {
     data row("label", label);
     row.set("class", chosen ? "best" : "");
     row.set("bytes", std::to_string(choice.bytes));
     row.set("times", timesSmaller(choice.bytes));
     row.set("error", errorText(choice.error));
+    if (flip) row.set("flip", fmt::format("{:.3f}", *flip));
     row.set("command", commandOf(choice, file));
     return row;
 }
@@ -53,11 +54,20 @@ data choiceRow(const std::string& label, const Choice& choice, const std::string
 data choiceRows(const MaterialPlan& plan) {
     const std::string file = plan.material.name + ".json";
     data rows{data::type::list};
+    const auto flipOf = [](const Choice& choice) {
+        return choice.flip ? std::optional(choice.flip->mean) : std::nullopt;
+    };
     for (const Choice& each : plan.cheaper) {
-        rows.push_back(choiceRow(plan.accepted ? "cheaper" : "tried", each, file, false));
+        const std::string label = plan.accepted ? "cheaper" : "tried";
+        rows.push_back(choiceRow(label, each, flipOf(each), file, false));
     }
-    if (plan.accepted) rows.push_back(choiceRow("chosen", plan.accepted->choice, file, true));
-    if (plan.dearer) rows.push_back(choiceRow("half the error", *plan.dearer, file, false));
+    if (plan.accepted) {
+        const Accepted& chosen = *plan.accepted;
+        rows.push_back(choiceRow("chosen", chosen.choice, chosen.picture.flip.mean, file, true));
+    }
+    if (plan.dearer)
+        rows.push_back(
+            choiceRow("half the error", *plan.dearer, flipOf(*plan.dearer), file, false));
     return rows;
 }
 
@@ -111,15 +121,19 @@ data materialData(const MaterialPlan& plan, bool costs) {
     data entry("name", material.name);
     entry.set("brdf", withoutFolders(material.brdf));
     entry.set("budget",
-              fmt::format("{:g}, {}", material.budget.error,
+              fmt::format("{:g}, {}{}", material.budget.error,
                           material.budget.metric == Budget::Metric::log ? "mean of the logarithm’s"
-                                                                        : "relative L2"));
+                                                                        : "relative L2",
+                          material.budget.flip
+                              ? fmt::format("; FLIP {:g}, mean over lights", *material.budget.flip)
+                              : ""));
     entry.set("orientations", std::to_string(material.orientations.size()));
     entry.set("views", std::to_string(plan.views));
     entry.set("samples", std::to_string(plan.lightSamples));
     entry.set("samplingError", errorText(plan.referenceError));
     entry.set("rungs", std::to_string(plan.rungs));
     entry.set("tried", std::to_string(plan.tried));
+    if (plan.cut) entry.set("cut", true);
     entry.set("rules", listOf(plan.rules));
     entry.set("choices", choiceRows(plan));
     entry.set("hasChoices", plan.accepted.has_value() || !plan.cheaper.empty());

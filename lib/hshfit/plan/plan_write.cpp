@@ -45,7 +45,7 @@ std::string pairOf(const Choice* choice) {
 std::string planCsv(const Plan& plan) {
     std::string out =
         "material,brdf,bytes,error,verified,budget,metric,cheaper_bytes,cheaper_error,"
-        "dearer_bytes,dearer_error,command,refused\n";
+        "dearer_bytes,dearer_error,command,refused,flip,flip_budget\n";
     for (const MaterialPlan& each : plan.materials) {
         const Material& material = each.material;
         const Accepted* accepted = each.accepted ? &*each.accepted : nullptr;
@@ -61,7 +61,8 @@ std::string planCsv(const Plan& plan) {
         if (accepted) out += field(commandOf(accepted->choice, file));
         out += ',';
         if (!accepted) out += field(each.refused);
-        out += '\n';
+        out += accepted ? fmt::format(",{:.6g},", accepted->picture.flip.mean) : ",,";
+        out += material.budget.flip ? fmt::format("{:g}\n", *material.budget.flip) : "\n";
     }
     return out;
 }
@@ -82,14 +83,21 @@ std::string planText(const Plan& plan) {
         }
         const Accepted& accepted = *each.accepted;
         out += fmt::format(
-            "{}: {} bytes ({:.0f} x fewer), error {:.3g} of {:g}{}\n  {}\n", material.name,
+            "{}: {} bytes ({:.0f} x fewer), error {:.3g} of {:g}{}{}\n  {}\n", material.name,
             accepted.choice.bytes,
             static_cast<double>(baselineBytes) / static_cast<double>(accepted.choice.bytes),
             accepted.verified, material.budget.error,
+            material.budget.flip ? fmt::format(", FLIP {:.3f} of {:g}", accepted.picture.flip.mean,
+                                               *material.budget.flip)
+                                 : "",
             accepted.choice.nanoseconds
                 ? fmt::format(", {:.3g} ns a pair", *accepted.choice.nanoseconds)
                 : "",
             commandOf(accepted.choice, material.name + ".json"));
+        if (each.cut)
+            out += fmt::format(
+                "  the time was over after {} of {} forms: a cheaper one may keep to the budget\n",
+                each.tried, each.rungs);
         out += formulaText(each);
         out += seen;
         if (accepted.cost) out += fmt::format("  its shader: {} cycles\n", accepted.cost->cycles);
@@ -102,8 +110,9 @@ std::string planText(const Plan& plan) {
             out += "  " + lines.substr(at, end - at) + "\n";
         }
         if (!each.cheaper.empty()) {
-            out += fmt::format("  next cheaper: {} bytes, error {:.3g}\n",
-                               each.cheaper.back().bytes, each.cheaper.back().error);
+            const Choice& next = each.cheaper.back();
+            out += fmt::format("  next cheaper: {} bytes, error {:.3g}{}\n", next.bytes, next.error,
+                               next.flip ? fmt::format(", FLIP {:.3f}", next.flip->mean) : "");
         }
     }
     if (plan.costs) out += fmt::format("cycles: {}\n", choice::scaleText(*plan.costs));

@@ -124,17 +124,7 @@ Coefficients KeptProjections::outgoing(const Form& form) {
             }
         });
     }
-    const Coefficients& whole = kept.at(form.basis);
-    if (whole.order == form.order) return whole;
-    Coefficients cut = whole;
-    cut.order = form.order;
-    cut.values.clear();
-    const std::size_t rows = whole.values.size() / whole.slots();
-    for (std::size_t row = 0; row < rows; ++row) {
-        const auto from = whole.values.begin() + static_cast<std::ptrdiff_t>(row * whole.slots());
-        cut.values.insert(cut.values.end(), from, from + static_cast<std::ptrdiff_t>(cut.slots()));
-    }
-    return cut;
+    return truncated(kept.at(form.basis), form.order);
 }
 
 Representation KeptProjections::both(const Form& form) {

@@ -70,6 +70,15 @@ void MaterialSearch::refuse() {
                 "outgoing radiance still changes by {:.2g} with {} directions of light: no form of "
                 "order {} follows what they do not resolve.{}",
                 light_->change(), light_->samples(), options_.maxOrder, lobe);
+        } else if (plan_.cut) {
+            plan_.refused =
+                fmt::format("the time was over after {} of {} forms", plan_.tried, rungs_.size());
+        } else if (!looksRight_.empty()) {
+            plan_.refused = fmt::format(
+                "forms within {} bytes and order {} keep to {:g}, but their pictures have a FLIP "
+                "above {:g}.{}",
+                scene_.limits.bytes, options_.maxOrder, material.budget.error,
+                material.budget.flip.value_or(0), lobe);
         } else {
             const std::string tried = plan_.cheaper.empty()
                                           ? ""

@@ -44,7 +44,7 @@ ViewRange viewRange(const JsonFields& fields) {
 }
 
 Budget budget(const JsonFields& fields) {
-    onlyKeys(fields, {"metric", "error"});
+    onlyKeys(fields, {"metric", "error", "flip"});
     Budget result{.error = numberIn(fields, "error", 1e-4, 1)};
     if (fields.has("metric")) {
         const std::string metric = fields.word("metric");
@@ -54,6 +54,7 @@ Budget budget(const JsonFields& fields) {
             failWord(fields, "metric", {"relative_l2", "log"});
         }
     }
+    if (fields.has("flip")) result.flip = numberIn(fields, "flip", 1e-4, 1);
     return result;
 }
 

@@ -47,19 +47,6 @@ std::map<std::string, Form> rootsOf(std::span<const Form> forms) {
     return roots;
 }
 
-Coefficients prefixOf(const Coefficients& c, int order) {
-    if (order == c.order) return c;
-    Coefficients result = c;
-    result.order = order;
-    result.values.clear();
-    for (std::size_t row = 0; row < c.values.size(); row += c.slots()) {
-        const auto first = c.values.begin() + static_cast<std::ptrdiff_t>(row);
-        result.values.insert(result.values.end(), first,
-                             first + static_cast<std::ptrdiff_t>(result.slots()));
-    }
-    return result;
-}
-
 }  // namespace
 
 ProjectionCache::ProjectionCache(const Brdf& brdf, const ProjectionOptions& options)
@@ -113,7 +100,7 @@ double ProjectionCache::seconds(const Form& form) const {
 }
 
 Coefficients ProjectionCache::outgoing(const Form& form) {
-    return prefixOf(made(form).coefficients, form.order);
+    return truncated(made(form).coefficients, form.order);
 }
 
 Representation ProjectionCache::both(const Form& form) {

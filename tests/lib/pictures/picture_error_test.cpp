@@ -18,6 +18,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -251,6 +252,24 @@ TEST(HighlightLines, HoldWhatTheyName) {
         for (const HighlightLine& line : mirrorRidges(isotropic))
             for (const DirectionPair& pair : line.pairs)
                 EXPECT_LT(tanHalf(pair.wi, pair.wo), 1e-12);
+    }
+}
+
+/// Lights that are left out can only add to the mean.
+TEST(PictureError, ABoundOnFlipIsDecidedAsByAllLights) {
+    const FormulaBrdf f = scaled(1);
+    const PictureReference reference(f);
+    for (const FormulaBrdf& g : {scaled(1), scaled(1.02), scaled(0.5), dotted(0.9), dotted(-3)}) {
+        const OverLights all = reference.errorOf(g).flip;
+        for (const double most : {all.mean * 1.0001 + 1e-9, 1.0}) {
+            const std::optional<OverLights> within = reference.flipWithin(g, most);
+            ASSERT_TRUE(within);
+            EXPECT_NEAR(within->mean, all.mean, 1e-12);
+            EXPECT_EQ(within->largest, all.largest);
+            EXPECT_EQ(within->light, all.light);
+        }
+        for (const double most : {all.mean * 0.9999 - 1e-9, all.mean / 20 - 1e-9})
+            EXPECT_FALSE(reference.flipWithin(g, most));
     }
 }
 

@@ -323,6 +323,63 @@ TEST(Plan, IsTheSameTwiceAndGrowsAsTheBudgetShrinks) {
     }
 }
 
+/// A wide lamp is content with a form whose highlights under points are wrong.
+TEST(Plan, PicturesBoundTheFormToo) {
+    const SkyLight sky{SkyLight::Model::overcast, grey(1), grey(0.1)};
+    Scene scene = smallScene("lambert:kd=0.3+ggx:alpha=0.3,F0=0.2", sky, 0.02);
+    const Plan free = planScene(scene, open);
+    ASSERT_TRUE(free.materials[0].accepted);
+    EXPECT_FALSE(free.materials[0].accepted->choice.flip);
+    constexpr double most = 0.05;
+    EXPECT_GT(free.materials[0].accepted->picture.flip.mean, most);
+    scene.materials[0].budget.flip = most;
+    const Plan plan = planScene(scene, open);
+    ASSERT_TRUE(plan.materials[0].accepted) << plan.materials[0].refused;
+    const Accepted& accepted = *plan.materials[0].accepted;
+    const auto source = open(scene.materials[0].brdf);
+    const PictureError seen = pictureError(*source, *reconstruct(accepted.representation, open));
+    EXPECT_LE(seen.flip.mean, most);
+    EXPECT_EQ(seen.flip.mean, accepted.picture.flip.mean);
+    EXPECT_LE(accepted.verified, 0.02);
+    EXPECT_GT(accepted.choice.bytes, free.materials[0].accepted->choice.bytes);
+    ASSERT_FALSE(plan.materials[0].cheaper.empty());
+    for (const Choice& each : plan.materials[0].cheaper) {
+        ASSERT_TRUE(each.flip);
+        EXPECT_TRUE(each.flip->mean > most || each.error > 0.02);
+    }
+    for (const PlannedFormula& each : plan.materials[0].formulas) {
+        EXPECT_TRUE(each.row.picture.flip.mean <= most || !each.within) << each.row.name;
+    }
+    // No form of a few bytes looks right: the reason is the pictures.
+    scene.limits.bytes = free.materials[0].accepted->choice.bytes;
+    const Plan none = planScene(scene, open);
+    EXPECT_FALSE(none.materials[0].accepted);
+    EXPECT_NE(none.materials[0].refused.find("FLIP"), std::string::npos);
+}
+
+/// Without time to search, a form that keeps to the budget is there all the same.
+TEST(Plan, TakesALargeFormWhereTheTimeIsOver) {
+    const DiscLight lamp{directionFromAngles(0.6, 1), 0.2, grey(1)};
+    Scene scene = smallScene("lambert:kd=0.3+ggx:alpha=0.3,F0=0.2", lamp, 0.05);
+    const Plan plan = planScene(scene, open, {.seconds = 1e-3});
+    const MaterialPlan& cut = plan.materials[0];
+    ASSERT_TRUE(cut.accepted) << cut.refused;
+    EXPECT_TRUE(cut.cut);
+    EXPECT_LT(cut.tried, cut.rungs);
+    EXPECT_LE(cut.accepted->verified, 0.05);
+    EXPECT_NE(planText(plan).find("the time was over after"), std::string::npos);
+    const Plan whole = planScene(scene, open);
+    ASSERT_TRUE(whole.materials[0].accepted);
+    EXPECT_FALSE(whole.materials[0].cut);
+    EXPECT_LT(whole.materials[0].accepted->choice.bytes, cut.accepted->choice.bytes);
+    // No form of so few bytes: said as it is.
+    scene.limits.bytes = 8;
+    const Plan none = planScene(scene, open, {.seconds = 1e-3});
+    EXPECT_FALSE(none.materials[0].accepted);
+    const std::string& reason = none.materials[0].refused;
+    EXPECT_TRUE(reason.starts_with("the time was over after 0 of")) << reason;
+}
+
 TEST(Plan, SmoothLightBoundsTheOrder) {
     const SkyLight sky{SkyLight::Model::uniform, grey(1), {}};
     const Plan plan = planScene(smallScene("phong:exponent=8,ks=0.3", sky, 0.02), open);
@@ -396,6 +453,7 @@ TEST(SceneFile, NamesTheFieldThatIsWrong) {
              BadScene{"\"error\": 0.05", "\"error\": 0", "'budget.error' is 0"},
              BadScene{"\"error\": 0.05", "\"metric\": \"psnr\", \"error\": 1",
                       "'budget.metric' is 'psnr'; valid: relative_l2, log"},
+             BadScene{"\"error\": 0.05", "\"error\": 1, \"flip\": 2", "'budget.flip' is 2"},
              BadScene{"\"name\": \"a\"", "\"name\": \"../a\"", "'materials[0].name'"},
              BadScene{"\"name\": \"a\"", "\"name\": \"a\", \"orientations\": []",
                       "'materials[0].orientations' has to hold at least one"},

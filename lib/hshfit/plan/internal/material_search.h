@@ -3,6 +3,7 @@
 #include <hshfit/plan/internal/material_light.h>
 #include <hshfit/plan/internal/projections.h>
 #include <hshfit/plan/plan.h>
+#include <hshfit/time_limit.h>
 
 #include <map>
 #include <memory>
@@ -17,7 +18,8 @@ class MaterialSearch {
 public:
     /// Costs are stated where there are `costs`.
     MaterialSearch(const Scene& scene, const Material& material, const BrdfOpener& open,
-                   const PlanOptions& options, const gpu::ShaderCosts* costs);
+                   const PlanOptions& options, const gpu::ShaderCosts* costs,
+                   const TimeLimit& limit);
     ~MaterialSearch();
 
     MaterialPlan run();
@@ -60,8 +62,14 @@ private:
     double floorOf(const Rung& rung);
     /// The error of the rung before its numbers are rounded.
     std::optional<double> unroundedError(const Rung& rung);
+    /// Whether pictures of the rung's form, of kept projections, keep to the budget.
+    bool looksRight(const Rung& rung);
+    /// The source's pictures, drawn at the first call.
+    const PictureReference& pictures();
     double toleranceOf(const Form& form) const;
     Choice choiceOf(const Rung& rung, double error) const;
+    /// The choice with its FLIP, if the budget bounds it.
+    Choice shownChoice(const Rung& rung, double error);
     /// Projects as the command does and verifies by lattice points; none if verification fails.
     std::optional<Accepted> accept(const Rung& rung);
 
@@ -70,7 +78,9 @@ private:
     bool makeWay(std::size_t place);
     void takeCheapest();
     void takeFastest();
-    /// Without an accepted choice, finds the front of all tried rungs.
+    /// The largest halfway form in half, if it keeps to the budget.
+    void takeLarge();
+    /// Without an accepted choice, or time, finds the front of all tried rungs.
     void findNeighbours(std::size_t chosen);
     /// The least truncation error of any linear form.
     double leastFloor() const;
@@ -81,6 +91,7 @@ private:
     const BrdfOpener& open_;
     const PlanOptions& options_;
     const gpu::ShaderCosts* costs_;
+    const TimeLimit limit_;
     MaterialPlan plan_;
     std::vector<Version> versions_;
     std::unique_ptr<MaterialLight> light_;
@@ -89,6 +100,8 @@ private:
     std::map<std::string, std::optional<double>> errors_;  ///< by source and form
     std::vector<double> lightBands_;                       ///< [l]: power of f's light in HSH
     int usefulOrder_ = 0;
+    std::optional<PictureReference> pictures_;
+    std::map<std::string, bool> looksRight_;  ///< by source and form
     std::string lastFailure_;
 };
 

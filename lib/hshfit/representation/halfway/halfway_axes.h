@@ -32,15 +32,18 @@ public:
     /// Roughnesses from 1e-5 to 0.9, a shelf of at least 1e-4.
     explicit HalfwayAxes(const HalfwayLobe& lobe);
 
-    /// wi and wo above the horizon.
-    HalfwayPoint at(const Direction& wi, const Direction& wo) const;
-
     /// The numbers of the lobe in the formula above: g_x = xx h_x + xy h_y, g_y = yx h_x + yy h_y;
     /// 1 / ln(1 + max Q); 1 / (2 pi a b); s.
     struct Constants {
         double xx, xy, yx, yy, perLog, amplitude, shelf;
     };
     const Constants& constants() const { return constants_; }
+
+    /// wi and wo above the horizon.
+    HalfwayPoint at(const Direction& wi, const Direction& wo) const {
+        return at(constants_, wi, wo);
+    }
+    static HalfwayPoint at(const Constants& constants, const Direction& wi, const Direction& wo);
 
 private:
     Constants constants_;

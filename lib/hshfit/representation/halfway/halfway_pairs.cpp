@@ -54,6 +54,18 @@ HalfwayRunLayout runOf(const HalfwayRun& run, const HalfwayRows& rows) {
     return out;
 }
 
+/// The place of a row of a block in the table of one pair.
+std::uint16_t onePlace(std::uint16_t row, const HalfwayRows& rows, std::size_t functions) {
+    if (row >= rows.powers) return static_cast<std::uint16_t>(4 * functions + row - rows.powers);
+    std::uint16_t axis = 0, first = 0;
+    for (const std::uint16_t start : {rows.x, rows.v, rows.product}) {
+        if (row < start) break;
+        first = start;
+        ++axis;
+    }
+    return static_cast<std::uint16_t>(4 * (row - first) + axis);
+}
+
 class HalfwayPairs final : public PairEvaluator {
 public:
     explicit HalfwayPairs(const Representation& r)
@@ -93,6 +105,8 @@ HalfwayLayout<T> halfwayLayoutOf(const HalfwayExpansion& expansion) {
             }
         }
     }
+    layout.terms = terms.size();
+    layout.values.resize(layout.values.size() + 3);
     for (const HalfwayCeiling& ceiling : expansion.ceilings()) {
         for (const double value : {ceiling.smooth, ceiling.lobe, ceiling.top})
             layout.ceilings.push_back(static_cast<T>(value));
@@ -102,6 +116,13 @@ HalfwayLayout<T> halfwayLayoutOf(const HalfwayExpansion& expansion) {
     for (int n = 0; n < most; ++n) {
         layout.steps.push_back(static_cast<T>((2.0 * n + 1) / (n + 1)));
         layout.steps.push_back(static_cast<T>(n / (n + 1.0)));
+    }
+    const auto functions = static_cast<std::size_t>(most);
+    layout.oneRows = 4 * functions + layout.rows.above - layout.rows.powers;
+    for (HalfwayRunLayout run : layout.runs) {
+        run.first = onePlace(run.first, layout.rows, functions);
+        for (std::uint16_t& factor : run.factors) factor = onePlace(factor, layout.rows, functions);
+        layout.oneRuns.push_back(run);
     }
     return layout;
 }

@@ -216,14 +216,13 @@ void evaluateHalfway(const HalfwayLayout<T>& layout, const DirectionBatch& wi,
     const auto table = hwy::AllocateAligned<T>(block<T> * layout.rows.count);
     Pairs<T> pairs;
     HWY_ALIGN T sums[3][block<T>];
-    const std::size_t perChannel = layout.values.size() / std::max<std::size_t>(layout.channels, 1);
     for (std::size_t first = 0; first < wi.count; first += block<T>) {
         pairs.load(wi, wo, first);
         for (std::size_t k = 0; k < block<T>; k += hn::Lanes(Lanes<T>()))
             fillTable(layout, pairs, k, table.get());
         const std::size_t count = std::min(block<T>, wi.count - first);
         for (std::size_t c = 0; c < layout.channels; c += 3) {
-            const T* values = layout.values.data() + c * perChannel;
+            const T* values = layout.values.data() + c * layout.terms;
             const std::size_t group = std::min<std::size_t>(3, layout.channels - c);
             if (group == 3) {
                 sumChannels<3, T>(layout, table.get(), c, values, sums);
@@ -259,13 +258,34 @@ namespace hshfit::inline representation::inline halfway {
 HWY_EXPORT(HalfwayInSingle);
 HWY_EXPORT(HalfwayInDouble);
 
+namespace {
+
+/// One pair fills a vector with its own functions and channels instead of other pairs.
+template <class T>
+bool evaluatedAlone(const HalfwayLayout<T>& layout, const DirectionBatch& wi,
+                    const DirectionBatch& wo, std::size_t stride, T* out) {
+    if (wi.count != 1 || layout.oneRows > HalfwayLayout<T>::mostOneRows) return false;
+    if (*wi.z > 0 && *wo.z > 0) {
+        const HalfwayPoint point =
+            HalfwayAxes::at(layout.axes, {*wi.x, *wi.y, *wi.z}, {*wo.x, *wo.y, *wo.z});
+        evaluateHalfwayPair(layout, point, stride, out);
+    } else {
+        for (std::size_t c = 0; c < layout.channels; ++c) out[c * stride] = 0;
+    }
+    return true;
+}
+
+}  // namespace
+
 void evaluateHalfwayPairs(const HalfwayLayout<float>& layout, const DirectionBatch& wi,
                           const DirectionBatch& wo, std::size_t stride, float* out) {
+    if (evaluatedAlone(layout, wi, wo, stride, out)) return;
     HWY_DYNAMIC_DISPATCH(HalfwayInSingle)(layout, wi, wo, stride, out);
 }
 
 void evaluateHalfwayPairs(const HalfwayLayout<double>& layout, const DirectionBatch& wi,
                           const DirectionBatch& wo, std::size_t stride, double* out) {
+    if (evaluatedAlone(layout, wi, wo, stride, out)) return;
     HWY_DYNAMIC_DISPATCH(HalfwayInDouble)(layout, wi, wo, stride, out);
 }
 

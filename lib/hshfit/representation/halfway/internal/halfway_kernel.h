@@ -39,16 +39,28 @@ struct HalfwayLayout {
     std::size_t channels = 0;
     std::vector<Run> runs;
     std::size_t smoothRuns = 0;  ///< those of the smooth exponent, which come first
-    /// [group of three channels][run][i][channel of the group]
+    std::size_t terms = 0;       ///< a channel
+    /// [group of three channels][run][i][channel of the group], and three more numbers
     std::vector<T> values;
     std::vector<T> ceilings;  ///< [channel][smooth, lobe, top]
     /// The recurrence of Legendre's polynomials, p_{n+1} = a_n t p_n - b_n p_{n-1}, [n] = {a, b}.
     std::vector<T> steps;
+    /// `runs` for one pair alone, in whose table the functions of degree n along the mean, x, v and
+    /// the product follow each other at 4 n, and after all of them the other factors.
+    std::vector<Run> oneRuns;
+    std::size_t oneRows = 0;
+    static constexpr std::size_t mostOneRows = 1024;  ///< beyond these it is no faster
 };
 
 /// That of an expansion.
 template <class T>
 HalfwayLayout<T> halfwayLayoutOf(const HalfwayExpansion& expansion);
+
+/// f at a pair, out[channel * stride], where `oneRows` is at most `mostOneRows`.
+void evaluateHalfwayPair(const HalfwayLayout<float>& layout, const HalfwayPoint& point,
+                         std::size_t stride, float* out);
+void evaluateHalfwayPair(const HalfwayLayout<double>& layout, const HalfwayPoint& point,
+                         std::size_t stride, double* out);
 
 /// f at pairs k < count, out[channel * stride + k]. Runs code for the best instruction set that the
 /// machine has.
