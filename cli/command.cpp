@@ -1,10 +1,10 @@
 #include "command.h"
 
 #include "command_table.h"
-#include "option_values.h"
 #include "outputs.h"
 #include "page.h"
 #include "standard_files.h"
+#include "within.h"
 
 #include <hshfit/error.h>
 #include <hshfit/files/json_fields.h>
@@ -36,7 +36,7 @@ void addCommand(CLI::App& app, Globals& globals, const Command& row) {
     command.add_flag("--json", globals.json, "Print a machine-readable answer to standard output");
     command.add_flag("--quiet", globals.quiet, "No progress and no notes on standard error");
     command.add_option("--threads", globals.threads, "Threads to use; 0: all cores")
-        ->check(CLI::Range(0, 4096));
+        ->check(within(jobs::Bounds<int>{0, 4096}));
     if (!row.add) {
         command.allow_extras();
         command.callback([&row] { throw UsageError(notBuilt(row.name, *row.wing)); });
@@ -44,7 +44,6 @@ void addCommand(CLI::App& app, Globals& globals, const Command& row) {
     }
     row.add(command, globals);
     addForce(command, globals);
-    stateRanges(command);
     acceptStandardStreams(command);
 }
 

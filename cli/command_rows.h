@@ -23,6 +23,7 @@ OptionTables lightRows();
 OptionTables ltcRows();
 OptionTables planRows();
 OptionTables projectRows();
+OptionTables renderRows();
 OptionTables reportRows();
 OptionTables sampleRows();
 OptionTables stressRows();

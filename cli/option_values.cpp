@@ -30,7 +30,9 @@ bool takesCommas(const CLI::App& command, const std::string& name) {
     const CLI::Option* option = command.get_option_no_throw(name);
     if (!option) return false;
     const jobs::OptionRow* row = findRow(command, *option);
-    return (row && row->values.syntax == Syntax::list) || option->get_delimiter() == ',' ||
+    const bool several =
+        row && (row->values.syntax == Syntax::list || row->values.syntax == Syntax::numbers);
+    return several || option->get_delimiter() == ',' ||
            std::ranges::find(takeCommas, name) != std::end(takeCommas);
 }
 
@@ -77,26 +79,6 @@ bool goesOn(const std::string& before, const std::string& word) {
 }
 
 }  // namespace
-
-void stateRanges(CLI::App& command) {
-    constexpr std::string_view opening = " in [", middle = " - ";
-    for (CLI::Option* option : command.get_options()) {
-        if (option->get_type_name().find(opening) == std::string::npos) continue;
-        CLI::Validator& validator = *option->get_validator(0);
-        const std::string description = validator.get_description();
-        const std::size_t begin = description.find(opening), gap = description.find(middle);
-        if (begin == std::string::npos || gap == std::string::npos) continue;
-        const std::size_t least = begin + opening.size(), most = gap + middle.size();
-        const std::string range =
-            fmt::format("{} to {}", description.substr(least, gap - least),
-                        description.substr(most, description.size() - 1 - most));
-        const CLI::Validator test = validator;
-        validator.operation([test, range](std::string& value) {
-            return test(value).empty() ? std::string()
-                                       : fmt::format("'{}' is not within {}", value, range);
-        });
-    }
-}
 
 void refuseSpacedLists(const CLI::App& app, const std::vector<std::string>& words) {
     const auto chosen = app.get_subcommands([&](const CLI::App* subcommand) {

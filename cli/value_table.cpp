@@ -91,10 +91,8 @@ constexpr ValueRow valueRows[] = {
     {"", "--basis", {basisWords}},
     {"", "--compare-models", {modelWords, Syntax::sum}},
     {"", "--convention", {conventionWords}},
-    {"", "--light", {nullptr, Syntax::light, Files::read, ""}},
     {"", "--lighting", {lightingWords, Syntax::list}},
     {"", "--loss", {lossWords}},
-    {"", "--mesh", {nullptr, Syntax::word, Files::read}},
     {"", "--output", {nullptr, Syntax::word, Files::written, ".json"}},
     {"", "--pairs", {nullptr, Syntax::word, Files::read, ""}},
     {"", "--records", {nullptr, Syntax::word, Files::added}},
@@ -126,7 +124,7 @@ namespace {
 /// Null for what the type and the range of an option tell.
 const Values* statedIn(const Values& values) {
     const bool plain = values.syntax == Syntax::word || values.syntax == Syntax::list ||
-                       values.syntax == Syntax::outgoing;
+                       values.syntax == Syntax::numbers || values.syntax == Syntax::outgoing;
     return plain && !values.words && values.files == Files::none ? nullptr : &values;
 }
 

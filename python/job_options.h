@@ -27,6 +27,8 @@ class Keywords {
 public:
     explicit Keywords(const py::dict& given) : left_(given.attr("copy")()) {}
 
+    /// Leaves out arguments that are None: they stand for what is not given.
+    void dropNone();
     /// Sets the options that are given. Throws UsageError for a value out of its range, and
     /// TypeError for one of another type.
     void set(const Options& options);

@@ -32,11 +32,19 @@ enum class Files {
 enum class Syntax {
     word,      ///< one of the words
     list,      ///< several, with commas
+    numbers,   ///< with commas, one value
     sum,       ///< several, with '+'
     outgoing,  ///< a set of outgoing directions
     brdf,      ///< a specification of a BRDF
     light,     ///< a specification of a light
     either,
+};
+
+/// Other ways to state a number.
+enum class Unit {
+    none,
+    percent,  ///< 1% is 0.01
+    bytes,    ///< 8G, on the command line alone
 };
 
 /// The values of an option, beside those that its type and range state.
@@ -65,6 +73,10 @@ struct OptionRow {
     std::string_view fallback = {};  ///< the default in words, where the member does not tell it
     std::string_view keyword = {};   ///< of Python, where it is another word
     unsigned inputs = ~0U;           ///< kinds of inputs that it is for, bits of the job's own
+    Unit unit = Unit::none;
+    std::string_view also = {};  ///< another name on the command line
+    /// An option that it is given with, and one or more, with spaces, that it excludes.
+    std::string_view needs = {}, excludes = {};
 
     // The same row with more said.
     template <class Number>
@@ -96,6 +108,26 @@ struct OptionRow {
     constexpr OptionRow onlyFor(unsigned kinds) const {
         OptionRow row = *this;
         row.inputs = kinds;
+        return row;
+    }
+    constexpr OptionRow in(Unit unit_) const {
+        OptionRow row = *this;
+        row.unit = unit_;
+        return row;
+    }
+    constexpr OptionRow orNamed(std::string_view word) const {
+        OptionRow row = *this;
+        row.also = word;
+        return row;
+    }
+    constexpr OptionRow with(std::string_view option) const {
+        OptionRow row = *this;
+        row.needs = option;
+        return row;
+    }
+    constexpr OptionRow notWith(std::string_view options) const {
+        OptionRow row = *this;
+        row.excludes = options;
         return row;
     }
 };

@@ -180,7 +180,8 @@ public:
         : options_(options),
           listener_(listener),
           limit_(options.seconds),
-          view_(radians(options.viewTheta), radians(options.viewPhi), radians(options.fieldOfView)),
+          view_(radians(options.view.theta), radians(options.view.phi),
+                radians(options.fieldOfView)),
           columns_(columnsOf(options)),
           lights_(lightsOf(options, view_)),
           points_(pointsOf(options, view_, result)) {
@@ -326,7 +327,7 @@ Rendered render(const std::vector<std::string>& specs, const std::string& output
     renderer.open(expandInputs(specs, Members::both));
     AtomicFile file(output);
     renderer.light();
-    result.stops = options.stops ? *options.stops : renderer.automaticStops();
+    result.stops = options.exposure ? *options.exposure : renderer.automaticStops();
     SheetBuilder sheet(options, output.ends_with(".exr"), result);
     renderer.fill(sheet, result.stops);
     writeSheet(sheet.sheet(), result.stops, file, attributesOf(result));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <jobs/common/listener.h>
+#include <jobs/common/number_text.h>
 
 #include <hshfit/pictures/sphere.h>
 #include <hshfit/rendering/lit_picture.h>
@@ -29,11 +30,11 @@ struct RenderOptions {
     std::string outgoing;
     /// Stops that are added to the exposure, a picture for each.
     std::vector<double> exposures = {0};
-    std::optional<double> stops = {};  ///< the exposure; none: automatic
+    std::optional<double> exposure = {};  ///< stops; none: automatic
     int size = 256;
-    int samples = 2;                     ///< n: n x n a pixel
-    double viewTheta = 75, viewPhi = 0;  ///< direction to the viewer in the world, degrees
-    double fieldOfView = 0;              ///< of perspective, degrees; 0: parallel lines of sight
+    int samples = 2;         ///< n: n x n a pixel
+    Angles view = {75, 0};   ///< direction to the viewer in the world
+    double fieldOfView = 0;  ///< of perspective, degrees; 0: parallel lines of sight
     /// Bound of the estimated relative error of integration at a point; none: 5 % of a picture by
     /// integration alone (docs/reference/render.md has real errors), and 0.5 % beside coefficients.
     std::optional<double> tolerance = {};

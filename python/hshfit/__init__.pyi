@@ -10,6 +10,8 @@ __version__: str
 Floats = NDArray[numpy.float64]
 Path = Union[str, "os.PathLike[str]"]
 Names = Union[str, Sequence[Union[str, int]]]
+Numbers = Union[str, float, Sequence[float], None]
+Lights = Union[Path, Sequence[Union[Path, Tuple[float, ...]]]]
 OutgoingLike = Union[str, int, Tuple[float, float], "Outgoing", None]
 Progress = Optional[Callable[[str, int, int], object]]
 Row = Dict[str, Any]

@@ -221,8 +221,9 @@ TEST_F(Studies, SpheresAreThePictureOfTheProgram) {
         return jobs::ProgressCall();
     }};
     for (const std::string extension : {".png", ".exr"}) {
-        const jobs::SphereSheet sheet = jobs::renderSpheres(
-            {"lambert:kd=.5", "ggx:alpha=.4"}, path("job" + extension), {.size = 16}, listener);
+        const jobs::SphereSheet sheet =
+            jobs::render({"lambert:kd=.5", "ggx:alpha=.4"}, path("job" + extension),
+                         jobs::SphereSheetOptions{.size = 16}, listener);
         ASSERT_EQ(sheet.spheres.size(), 2u);
         EXPECT_EQ(sheet.spheres[1].column, 16u);
         EXPECT_EQ(parts.count(sheet.spheres[0].brdf), 1u);
