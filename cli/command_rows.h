@@ -17,6 +17,7 @@ OptionTables convertRows();
 OptionTables exportRows();
 OptionTables fitRows();
 OptionTables gaussianRows();
+OptionTables illuminateRows();
 OptionTables irradianceRows();
 OptionTables libraryRows();
 OptionTables lightRows();

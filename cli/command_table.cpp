@@ -220,7 +220,8 @@ constexpr Command table[] = {
                 "Pictures of a scene with global illumination, by path tracing or a radiance cache",
             .file = "illuminate.cpp",
             .example = "hshfit illuminate examples/scenes/box.json -o box --samples 16",
-            .add = addIlluminate}),
+            .add = addIlluminate,
+            .options = illuminateRows}),
     inWing(
         Wing::scenes,
         {.name = "transfer",

@@ -95,8 +95,6 @@ constexpr ValueRow valueRows[] = {
     {"", "--loss", {lossWords}},
     {"", "--output", {nullptr, Syntax::word, Files::written, ".json"}},
     {"", "--pairs", {nullptr, Syntax::word, Files::read, ""}},
-    {"", "--records", {nullptr, Syntax::word, Files::added}},
-    {"", "--reference", {nullptr, Syntax::word, Files::read, ""}},
     {"", "--source", {nullptr, Syntax::brdf, Files::read, ""}},
     {"", "A", {nullptr, Syntax::brdf, Files::read, ""}},
     {"", "B", {nullptr, Syntax::brdf, Files::read, ""}},
