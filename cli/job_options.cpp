@@ -57,7 +57,7 @@ public:
     void operator()(std::optional<Number>* value) const {
         CLI::Option* option = command_.add_option_function<double>(
             namesOf(row_), [value](double given) { *value = static_cast<Number>(given); });
-        checkRange<double>(*option);
+        checkRange<Number, double>(*option);
         if constexpr (std::is_integral_v<Number>) option->check(whole())->type_name("UINT");
         added(option);
     }
@@ -67,7 +67,7 @@ public:
         CLI::Option* option = command_.add_option(namesOf(row_), *value)->allow_extra_args(false);
         if (row_.values.syntax == jobs::Syntax::list) option->delimiter(',');
         checkRange<Element>(*option);
-        if (!value->empty()) option->capture_default_str();
+        if (!value->empty() && !saysDefault()) option->capture_default_str();
         added(option);
     }
     template <class Value>
@@ -79,6 +79,7 @@ public:
     }
 
 private:
+    bool saysDefault() const { return row_.help.find("(default") != std::string_view::npos; }
     /// Two words, the first for true.
     void addWords(bool* value) const {
         const std::vector<jobs::Word> words = row_.values.words();
@@ -94,12 +95,12 @@ private:
         return flag;
     }
     /// States the range, and lets numbers have their unit.
-    template <class Value>
+    template <class Value, class Given = Value>
     void checkRange(CLI::Option& option) const {
         if constexpr (std::is_arithmetic_v<Value>) {
             if (row_.range)
-                option.check(within(jobs::Bounds<Value>{static_cast<Value>(row_.range->least),
-                                                        static_cast<Value>(row_.range->most)}));
+                option.check(within<Value, Given>(
+                    {static_cast<Value>(row_.range->least), static_cast<Value>(row_.range->most)}));
             if (row_.unit == jobs::Unit::percent) option.transform(percents());
             if (row_.unit == jobs::Unit::bytes) option.transform(CLI::AsSizeValue(false));
         }

@@ -12,8 +12,8 @@
 
 namespace hshfit::cli {
 
-/// The check of a number; help and message state its ends alike.
-template <class Number>
+/// The check of a number, which is given as `Given`; help and message state its ends alike.
+template <class Number, class Given = Number>
 CLI::Validator within(const jobs::Bounds<Number>& bounds) {
     const auto text = [](Number end) {
         if constexpr (std::is_integral_v<Number>)
@@ -23,9 +23,10 @@ CLI::Validator within(const jobs::Bounds<Number>& bounds) {
     };
     const std::string least = text(bounds.least), most = text(bounds.most);
     const auto check = [bounds, least, most](const std::string& given) {
-        Number number{};
-        const bool in = CLI::detail::lexical_cast(given, number) && number >= bounds.least &&
-                        number <= bounds.most;
+        Given number{};
+        const bool in = CLI::detail::lexical_cast(given, number) &&
+                        number >= static_cast<Given>(bounds.least) &&
+                        number <= static_cast<Given>(bounds.most);
         return in ? std::string() : fmt::format("'{}' is not within {} to {}", given, least, most);
     };
     return {check, fmt::format("in [{} - {}]", least, most)};

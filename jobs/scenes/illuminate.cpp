@@ -201,7 +201,7 @@ Illuminated illuminate(const std::string& path, const std::string& folder,
         const std::vector<MaterialCost> costs =
             predictCosts(*cache, camerasOf(read, ""), options.path.samples);
         for (std::size_t k = 0; k < read.materials.size(); ++k) {
-            if (options.chooseByCost && costs[k].samplingIsCheaper())
+            if (options.chooseBy == RecordsBy::cost && costs[k].samplingIsCheaper())
                 cache->sample(k, costs[k].walks);
             const MaterialLight& light = cache->materials().materials[k];
             LitMaterial& lit = result.materials.emplace_back(

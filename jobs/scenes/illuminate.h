@@ -19,6 +19,10 @@ namespace hshfit::jobs {
 
 enum class IlluminateMethod { path, radianceCache };
 
+/// The grounds on which a material that has coefficients gets records: that predictCosts says they
+/// are cheaper than sampling, or its loss alone.
+enum class RecordsBy { cost, loss };
+
 struct IlluminateOptions {
     IlluminateMethod method = IlluminateMethod::path;
     std::string camera = {};  ///< the one to take; empty: all of the scene
@@ -27,8 +31,7 @@ struct IlluminateOptions {
     PathOptions path = {};  ///< its `samples` are those above, and `progress` is not called
     /// Of a radiance cache, whose bounces and seed are those of `path`.
     CacheOptions cache = {};
-    bool chooseByCost =
-        true;  ///< have materials sampled where predictCosts says that it is cheaper
+    RecordsBy chooseBy = RecordsBy::cost;
     std::vector<std::string> without = {};  ///< terms of the cache that are left out, by name
     bool published = false;                 ///< CacheOptions::asPublished
     double memory = 256;                    ///< MB of its records, at most

@@ -19,14 +19,14 @@ using options::spelled;
 constexpr EnumWord illuminateMethods[] = {
     {"path", "path tracing"},
     {"radiance-cache", "records of incident light on surfaces, by coefficients"}};
-constexpr EnumWord costChoices[] = {
-    {"loss", "always records"}, {"cost", "the way with less predicted CPU time at equal error"}};
+constexpr EnumWord recordGrounds[] = {
+    {"cost", "the way with less predicted CPU time at equal error"}, {"loss", "always records"}};
 constexpr EnumWord directLights[] = {{"sampled", "direct light as with paths"},
                                      {"gathered", "by the rays of records"}};
 constexpr EnumWord gradients[] = {
     {"none"}, {"hit-points", "the paper's"}, {"strata", "sees what comes into sight"}};
 using Methods = EnumWords<illuminateMethods, IlluminateMethod>;
-using CostChoices = EnumWords<costChoices, bool>;
+using RecordGrounds = EnumWords<recordGrounds, RecordsBy>;
 using DirectLights = EnumWords<directLights, DirectLight>;
 using Gradients = EnumWords<gradients, Gradient>;
 
@@ -63,7 +63,8 @@ constexpr OptionRow illuminateRows[] = {
         .within(bounds::mostBounces),
     OptionRow{"from-bounce", at<&IlluminateOptions::path, &PathOptions::fewestBounces>,
               "Leave out light of fewer reflections: 1 what is seen directly, 2 direct light too"}
-        .within(bounds::fewestBounces),
+        .within(bounds::fewestBounces)
+        .byDefault("0"),
     OptionRow{"seed", at<&IlluminateOptions::path, &PathOptions::seed>,
               "Seed of the random numbers"},
     OptionRow{"reference", at<&IlluminateOptions::reference>,
@@ -98,10 +99,10 @@ constexpr OptionRow cacheRows[] = {
         .within(bounds::cacheLoss)
         .onlyFor(ofCache),
     OptionRow{"choose-by",
-              spelled<CostChoices::parse, CostChoices::name, &IlluminateOptions::chooseByCost>,
+              spelled<RecordGrounds::parse, RecordGrounds::name, &IlluminateOptions::chooseBy>,
               "Records or sampling for a material that has coefficients. cost: the way with less "
               "predicted CPU time at equal error; loss: always records"}
-        .takes({.words = CostChoices::words, .complete = true})
+        .takes({.words = RecordGrounds::words, .complete = true})
         .onlyFor(ofCache),
     OptionRow{"rays", at<&IlluminateOptions::cache, &CacheOptions::rays>,
               "Rays of a record, at most"}

@@ -46,7 +46,7 @@ std::vector<Light> lightsOf(const RenderOptions& options, const View& view) {
 SurfacePoints pointsOf(const RenderOptions& options, const View& view, Rendered& result) {
     if (options.mesh.empty()) return spherePoints(view, options.size, options.samples);
     MeshFile file = readMesh(options.mesh);
-    if (options.meshYUp) turnUpright(file.mesh);
+    if (options.up == RenderOptions::Up::y) turnUpright(file.mesh);
     result.mesh = options.mesh;
     result.triangles = file.mesh.triangles.size();
     result.degenerate = file.degenerate;

@@ -15,13 +15,14 @@ namespace hshfit::jobs {
 
 struct RenderOptions {
     enum class By { coefficients, integration, both };
+    enum class Up { y, z };
 
     /// Light specifications (light/catalog.h), which add up.
     std::vector<std::string> lights;
     /// Lights about the line of sight, and radiance from all around, in addition.
     SphereRig rig = {.lights = {}, .dome = 0};
-    std::string mesh;     ///< path; empty: a sphere
-    bool meshYUp = true;  ///< the file's +y is up, as usual for OBJ files and scans; else its +z
+    std::string mesh;  ///< path; empty: a sphere
+    Up up = Up::y;     ///< of the file, as usual for OBJ files and scans
     By by = By::both;
     std::vector<std::string> bases = {"hsh"};
     std::vector<int> orders = {10};

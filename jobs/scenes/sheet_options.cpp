@@ -18,9 +18,9 @@ using options::at;
 using options::spelled;
 
 constexpr EnumWord ways[] = {{"coefficients"}, {"integration"}, {"both"}};
-constexpr EnumWord upAxes[] = {{"z"}, {"y"}};
+constexpr EnumWord upAxes[] = {{"y"}, {"z"}};
 using Ways = EnumWords<ways, RenderOptions::By>;
-using UpAxes = EnumWords<upAxes, bool>;
+using UpAxes = EnumWords<upAxes, RenderOptions::Up>;
 
 /// The point light of "THETA,PHI" or "THETA,PHI,STRENGTH".
 SphereLight pointLight(const std::string& text) {
@@ -91,10 +91,9 @@ constexpr OptionRow sheetRows[] = {
               "OBJ, PLY or glTF file in the place of the sphere"}
         .takes({.files = Files::read})
         .onlyFor(sheets::surfaces),
-    OptionRow{
-        "up",
-        spelled<UpAxes::parse, UpAxes::name, &SheetOptions::surfaces, &RenderOptions::meshYUp>,
-        "The mesh's axis that points up"}
+    OptionRow{"up",
+              spelled<UpAxes::parse, UpAxes::name, &SheetOptions::surfaces, &RenderOptions::up>,
+              "The mesh's axis that points up"}
         .takes({.words = UpAxes::words, .complete = true}),
     OptionRow{"view", spelled<viewIn, anglesText, &SheetOptions::surfaces, &RenderOptions::view>,
               "THETA,PHI: the direction to the viewer, degrees from the zenith and from +x towards "
@@ -111,13 +110,13 @@ constexpr OptionRow sheetRows[] = {
         .takes({.words = Ways::words, .complete = true})
         .onlyFor(sheets::surfaces),
     OptionRow{"basis", at<&SheetOptions::surfaces, &RenderOptions::bases>,
-              "Bases of the coefficients, a column each"}
+              "Bases of the coefficients, a column each (default: hsh)"}
         .takes({basisWords, Syntax::list})
         .orNamed("bases")
         .inPython("bases")
         .onlyFor(sheets::surfaces),
     OptionRow{"order", at<&SheetOptions::surfaces, &RenderOptions::orders>,
-              "Their numbers of bands, a column each"}
+              "Their numbers of bands, a column each (default: 10)"}
         .takes({.syntax = Syntax::list})
         .orNamed("orders")
         .inPython("orders")
@@ -129,7 +128,7 @@ constexpr OptionRow sheetRows[] = {
               "isotropic, else 48x48)"}
         .takes({.syntax = Syntax::outgoing}),
     OptionRow{"exposures", at<&SheetOptions::surfaces, &RenderOptions::exposures>,
-              "Stops, a column each: -2,0,2"}
+              "Stops, a column each: -2,0,2 (default: 0)"}
         .within(stops)
         .takes({.syntax = Syntax::list})
         .onlyFor(sheets::surfaces),
