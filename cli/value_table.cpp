@@ -48,10 +48,6 @@ Words helpWords() {
     return words;
 }
 
-Words rotationWords() {
-    return {{"exact"}, {"through-sh"}, {"table"}, {"paper-shift"}};
-}
-
 // A row for one command stands before the row for all.
 constexpr ValueRow valueRows[] = {
     {"batch", "MANIFEST", {nullptr, Syntax::word, Files::read, ""}},
@@ -81,7 +77,6 @@ constexpr ValueRow valueRows[] = {
     {"plot", "--output", {nullptr, Syntax::word, Files::written}},
     {"render", "--output", {nullptr, Syntax::word, Files::written, ".png"}},
     {"report", "--output", {nullptr, Syntax::word, Files::folder}},
-    {"rotate", "--method", {rotationWords}},
     {"sample", "--output", {nullptr, Syntax::word, Files::written, ".csv"}},
     {"stress", "--output", {nullptr, Syntax::word, Files::folder}},
     {"svbrdf", "DESCRIPTION", {nullptr, Syntax::word, Files::read, ".json"}},

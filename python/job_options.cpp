@@ -260,10 +260,13 @@ std::string docstring(const OptionFunction& function) {
     }
     for (const auto& [name, type] : function.others)
         signature += fmt::format(", {}: {} = None", name, type);
-    return fmt::format(
-        "{}, progress: Progress = None) -> {}\n\n{}\n{}\nprogress    called as progress(part, "
-        "done, total) from this thread; an exception from it stops",
-        signature, function.result, function.text, lines);
+    if (function.progress) {
+        signature += ", progress: Progress = None";
+        lines +=
+            "\nprogress    called as progress(part, done, total) from this thread; an exception "
+            "from it stops";
+    }
+    return fmt::format("{}) -> {}\n\n{}\n{}", signature, function.result, function.text, lines);
 }
 
 }  // namespace hshfit::python

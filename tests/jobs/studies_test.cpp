@@ -200,7 +200,7 @@ TEST_F(Studies, ImportWritesTheCoefficientsOfTheProgram) {
 }
 
 TEST_F(Studies, MatrixHasTheNumbersOfTheProgram) {
-    const auto rows = jobs::matrix({.from = "sh", .to = "hsh", .fromOrder = 3, .toOrder = 2});
+    const auto rows = jobs::matrix({.from = "sh", .to = "hsh", .order = 2, .fromOrder = 3});
     const json answer = json::parse(runProgram("matrix sh hsh --order 2 --from-order 3 --json"));
     EXPECT_EQ(rows.size(), 4u);
     EXPECT_EQ(answer["matrix"], json(rows));
