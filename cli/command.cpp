@@ -10,8 +10,6 @@
 #include <hshfit/files/json_fields.h>
 #include <hshfit/files/printable.h>
 
-#include <jobs/common/shared_options.h>
-
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -45,36 +43,6 @@ void addCommand(CLI::App& app, Globals& globals, const Command& row) {
     row.add(command, globals);
     addForce(command, globals);
     acceptStandardStreams(command);
-}
-
-void addRgb(CLI::App& command, bool& rgb) {
-    command.add_flag("--rgb", rgb, std::string(jobs::rgbRow({}).help));
-}
-
-std::vector<double> parseNumbers(const std::string& text, std::size_t count,
-                                 std::string_view option, std::string_view form) {
-    std::vector<double> numbers;
-    const char *at = text.data(), *end = at + text.size();
-    for (bool more = true; more && numbers.size() < count;) {
-        double number = 0;
-        const auto [next, error] = std::from_chars(at, end, number);
-        if (error != std::errc() || !std::isfinite(number)) break;
-        numbers.push_back(number);
-        more = next != end && *next == ',' && numbers.size() < count;
-        at = more ? next + 1 : next;
-    }
-    if (numbers.size() != count || at != end)
-        throw UsageError(fmt::format("{} '{}': give {}", option, text, form));
-    return numbers;
-}
-
-Direction parseDirection(const std::string& text, std::string_view option, double mostTheta) {
-    const std::string form =
-        fmt::format("THETA,PHI in degrees, theta from 0 to {} (for example 45,0)", mostTheta);
-    const auto angles = parseNumbers(text, 2, option, form);
-    if (!(angles[0] >= 0 && angles[0] <= mostTheta))
-        throw UsageError(fmt::format("{} '{}': give {}", option, text, form));
-    return directionFromAngles(radians(angles[0]), radians(angles[1]));
 }
 
 namespace {

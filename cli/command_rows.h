@@ -14,6 +14,7 @@ using OptionTables = std::vector<std::span<const jobs::OptionRow>>;
 OptionTables chooseRows();
 OptionTables compareRows();
 OptionTables convertRows();
+OptionTables evalRows();
 OptionTables exportRows();
 OptionTables fitRows();
 OptionTables gaussianRows();

@@ -7,6 +7,7 @@
 #include <hshfit/error.h>
 #include <hshfit/files/json_fields.h>
 
+#include <jobs/common/number_text.h>
 #include <jobs/lighting/light.h>
 
 #include <fmt/format.h>
@@ -134,7 +135,8 @@ std::string text(const jobs::ProjectedLight& result, const std::string& output) 
 
 void runLight(LightArguments& arguments, Globals& globals) {
     if (!arguments.normal.empty()) {
-        const Direction normal = parseDirection(arguments.normal, "--normal", 180);
+        const Direction normal =
+            jobs::anglesIn(arguments.normal, "LightOptions::normal", 180).direction();
         arguments.options.normal =
             Orientation{.theta = polarAngle(normal), .phi = azimuth(normal), .turn = 0};
     }

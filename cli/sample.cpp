@@ -3,6 +3,7 @@
 #include "documents.h"
 #include "job_options.h"
 
+#include <jobs/common/number_text.h>
 #include <jobs/exports/sample.h>
 
 #include <fmt/format.h>
@@ -94,7 +95,8 @@ std::string textOf(const jobs::Sampled& done, const std::string& output) {
 }
 
 void runSample(SampleArguments& arguments, const Globals& globals) {
-    arguments.options.outgoing = parseDirection(arguments.outgoing, "--outgoing");
+    arguments.options.outgoing =
+        jobs::anglesIn(arguments.outgoing, "SampleOptions::outgoing").direction();
     const jobs::Sampled done = jobs::sample(arguments.spec, arguments.output, arguments.options);
     if (!done.reflects)
         note(globals, "f is 0 at this outgoing direction: samples are drawn from the cosine");

@@ -89,7 +89,6 @@ constexpr ValueRow valueRows[] = {
     {"", "--lighting", {lightingWords, Syntax::list}},
     {"", "--loss", {lossWords}},
     {"", "--output", {nullptr, Syntax::word, Files::written, ".json"}},
-    {"", "--pairs", {nullptr, Syntax::word, Files::read, ""}},
     {"", "--source", {nullptr, Syntax::brdf, Files::read, ""}},
     {"", "A", {nullptr, Syntax::brdf, Files::read, ""}},
     {"", "B", {nullptr, Syntax::brdf, Files::read, ""}},
