@@ -25,6 +25,7 @@ OptionTables lightRows();
 OptionTables ltcRows();
 OptionTables matrixRows();
 OptionTables planRows();
+OptionTables plotRows();
 OptionTables projectRows();
 OptionTables renderRows();
 OptionTables reportRows();
