@@ -11,6 +11,7 @@ namespace hshfit::cli {
 
 using OptionTables = std::vector<std::span<const jobs::OptionRow>>;
 
+OptionTables batchRows();
 OptionTables chooseRows();
 OptionTables compareRows();
 OptionTables convertRows();

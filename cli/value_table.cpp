@@ -52,8 +52,6 @@ Words helpWords() {
 constexpr ValueRow valueRows[] = {
     {"batch", "MANIFEST", {nullptr, Syntax::word, Files::read, ""}},
     {"batch", "--output", {nullptr, Syntax::word, Files::folder}},
-    {"batch", "--costs", {nullptr, Syntax::word, Files::read}},
-    {"batch", "--progress", {nullptr, Syntax::word, Files::added}},
     {"choose", "--output", {nullptr, Syntax::word, Files::folder}},
     {"compare", "--output", {nullptr, Syntax::word, Files::folder}},
     {"convert", "--output", {nullptr, Syntax::word, Files::folder}},
