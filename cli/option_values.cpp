@@ -23,17 +23,12 @@
 namespace hshfit::cli {
 namespace {
 
-/// Options of commands without rows, and of several syntaxes, that take several values as one word.
-constexpr std::string_view takeCommas[] = {"--halfway", "--light", "--outgoing", "--wi", "--wo"};
-
 bool takesCommas(const CLI::App& command, const std::string& name) {
     const CLI::Option* option = command.get_option_no_throw(name);
-    if (!option) return false;
-    const jobs::OptionRow* row = findRow(command, *option);
-    const bool several =
-        row && (row->values.syntax == Syntax::list || row->values.syntax == Syntax::numbers);
-    return several || option->get_delimiter() == ',' ||
-           std::ranges::find(takeCommas, name) != std::end(takeCommas);
+    const jobs::OptionRow* row = option ? findRow(command, *option) : nullptr;
+    constexpr Syntax withCommas[] = {Syntax::list, Syntax::numbers, Syntax::outgoing,
+                                     Syntax::light};
+    return row && std::ranges::find(withCommas, row->values.syntax) != std::end(withCommas);
 }
 
 bool isNumber(std::string_view word) {

@@ -22,9 +22,7 @@ using Words = std::vector<Word>;
 
 using jobs::basisWords;
 using jobs::lightingWords;
-using jobs::lossWords;
 using jobs::modelWords;
-using jobs::splitWords;
 using jobs::withAll;
 using jobs::wordsOf;
 
@@ -81,13 +79,10 @@ constexpr ValueRow valueRows[] = {
     {"svbrdf", "--output", {nullptr, Syntax::word, Files::folder}},
     {"tradeoff", "--output", {nullptr, Syntax::word, Files::folder}},
     {"transfer", "--output", {nullptr, Syntax::word, Files::folder}},
-    {"", "--basis", {basisWords}},
     {"", "--compare-models", {modelWords, Syntax::sum}},
     {"", "--convention", {conventionWords}},
     {"", "--lighting", {lightingWords, Syntax::list}},
-    {"", "--loss", {lossWords}},
     {"", "--output", {nullptr, Syntax::word, Files::written, ".json"}},
-    {"", "--source", {nullptr, Syntax::brdf, Files::read, ""}},
     {"", "A", {nullptr, Syntax::brdf, Files::read, ""}},
     {"", "B", {nullptr, Syntax::brdf, Files::read, ""}},
     {"", "BASIS", {basisWords}},

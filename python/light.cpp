@@ -69,9 +69,10 @@ std::vector<std::string> specificationsOf(const py::object& specs) {
     return texts;
 }
 
-/// The options of light(), but for the sun, which is split off with the name of a file.
+/// The options of light(), but for the normal, which may be an array, and the sun, which is split
+/// off with the name of a file.
 Options optionsOf(jobs::LightOptions& options) {
-    return without(boundOptions(jobs::lightOptions(), options), {"split-sun"});
+    return without(boundOptions(jobs::lightOptions(), options), {"normal", "split-sun"});
 }
 
 std::shared_ptr<Lit> projected(const py::object& specs, const py::kwargs& keywords) {

@@ -61,6 +61,12 @@ concept Optional = requires(Type& value) {
     value.reset();
 };
 
+/// For `spelled`: the default has no word, or is told in words (OptionRow::fallback).
+template <class Type>
+std::string untold(const Type&) {
+    return {};
+}
+
 /// The same of a member that `parse` reads and `name` writes as a word.
 template <auto parse, auto name, auto First, auto... Rest>
 constexpr Member spelled = {

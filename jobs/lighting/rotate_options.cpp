@@ -40,23 +40,18 @@ Rotation upTo(const std::string& text) {
                               "THETA,PHI in degrees, where +z goes (for example 30,180)");
     return Rotation::zTo(Angles{up[0], up[1]}.direction());
 }
-/// There is no default to tell.
-std::string untold(const Rotation&) {
-    return {};
-}
-
 constexpr Values numbers{.syntax = Syntax::numbers};
 
 constexpr OptionRow rotateRows[] = {
-    OptionRow{"euler", spelled<byEuler, untold, &RotateOptions::rotation>,
+    OptionRow{"euler", spelled<byEuler, options::untold<Rotation>, &RotateOptions::rotation>,
               "A,B,C in degrees: R_z(A) R_y(B) R_z(C), directions move"}
         .takes(numbers)
         .notWith("axis up"),
-    OptionRow{"axis", spelled<aboutAxis, untold, &RotateOptions::rotation>,
+    OptionRow{"axis", spelled<aboutAxis, options::untold<Rotation>, &RotateOptions::rotation>,
               "X,Y,Z,ANGLE: right-handed, in degrees"}
         .takes(numbers)
         .notWith("up"),
-    OptionRow{"up", spelled<upTo, untold, &RotateOptions::rotation>,
+    OptionRow{"up", spelled<upTo, options::untold<Rotation>, &RotateOptions::rotation>,
               "THETA,PHI in degrees: where +z goes, along the shortest arc"}
         .takes(numbers),
     OptionRow{"method",
