@@ -132,7 +132,8 @@ sources and the largest orders. Throws UsageError for others.)")
             .options = optionsOf(options),
             .result = "Row",
             .text = R"(Draw the functions of a basis by gnuplot to a .png, .svg or .pdf (Fig. 10 of
-Gautron et al. 2004), over the domain "hemisphere" (None) or "sphere". OutputError without gnuplot.)",
+Gautron et al. 2004), over the domain "hemisphere" (None) or "sphere". OutputError without
+gnuplot.)",
             .others = {{"domain", "Optional[str]"}},
             .progress = false},
            plotted, py::arg("basis"), py::arg("path"));

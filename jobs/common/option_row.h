@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <typeinfo>
 #include <vector>
 
@@ -78,57 +79,42 @@ struct OptionRow {
     /// An option that it is given with, and one or more, with spaces, that it excludes.
     std::string_view needs = {}, excludes = {};
 
+private:
+    template <class Value>
+    constexpr OptionRow having(Value OptionRow::*member,
+                               const std::type_identity_t<Value>& value) const {
+        OptionRow row = *this;
+        row.*member = value;
+        return row;
+    }
+
+public:
     // The same row with more said.
     template <class Number>
     constexpr OptionRow within(const Bounds<Number>& bounds) const {
-        OptionRow row = *this;
-        row.range = {static_cast<double>(bounds.least), static_cast<double>(bounds.most)};
-        return row;
+        return having(&OptionRow::range, Bounds<double>{static_cast<double>(bounds.least),
+                                                        static_cast<double>(bounds.most)});
     }
-    constexpr OptionRow takes(const Values& what) const {
-        OptionRow row = *this;
-        row.values = what;
-        return row;
-    }
-    constexpr OptionRow orWithout(std::string_view help_) const {
-        OptionRow row = *this;
-        row.without = help_;
-        return row;
+    constexpr OptionRow takes(const Values& what) const { return having(&OptionRow::values, what); }
+    constexpr OptionRow orWithout(std::string_view said) const {
+        return having(&OptionRow::without, said);
     }
     constexpr OptionRow byDefault(std::string_view words) const {
-        OptionRow row = *this;
-        row.fallback = words;
-        return row;
+        return having(&OptionRow::fallback, words);
     }
     constexpr OptionRow inPython(std::string_view word) const {
-        OptionRow row = *this;
-        row.keyword = word;
-        return row;
+        return having(&OptionRow::keyword, word);
     }
-    constexpr OptionRow onlyFor(unsigned kinds) const {
-        OptionRow row = *this;
-        row.inputs = kinds;
-        return row;
-    }
-    constexpr OptionRow in(Unit unit_) const {
-        OptionRow row = *this;
-        row.unit = unit_;
-        return row;
-    }
+    constexpr OptionRow onlyFor(unsigned kinds) const { return having(&OptionRow::inputs, kinds); }
+    constexpr OptionRow in(Unit other) const { return having(&OptionRow::unit, other); }
     constexpr OptionRow orNamed(std::string_view word) const {
-        OptionRow row = *this;
-        row.also = word;
-        return row;
+        return having(&OptionRow::also, word);
     }
     constexpr OptionRow with(std::string_view option) const {
-        OptionRow row = *this;
-        row.needs = option;
-        return row;
+        return having(&OptionRow::needs, option);
     }
     constexpr OptionRow notWith(std::string_view options) const {
-        OptionRow row = *this;
-        row.excludes = options;
-        return row;
+        return having(&OptionRow::excludes, options);
     }
 };
 
