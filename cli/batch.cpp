@@ -1,11 +1,12 @@
 #include "batch_program.h"
 #include "batch_progress.h"
 #include "command.h"
+#include "command_rows.h"
+#include "job_options.h"
 
 #include <hshfit/error.h>
 
-#include <jobs/batches/run.h>
-#include <jobs/batches/table.h>
+#include <jobs/batches/batch_options.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -23,17 +24,15 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t shownFailures = 20, shownMistakes = 1000;
 
 struct BatchArguments {
-    std::string manifest, folder, shard, progress;
-    bool check = false, list = false, status = false, merge = false;
-    std::uint64_t memory = 0;
-    jobs::BatchOptions options;
-    jobs::MergeOptions mergeOptions;
+    std::string manifest, folder;
+    jobs::BatchRequest options;
 };
 
 /// Paths of a manifest are relative to its folder, which becomes the current one; those of the
 /// command line become absolute before.
 void enterFolderOf(BatchArguments& arguments) {
-    for (std::string* path : {&arguments.folder, &arguments.options.costs, &arguments.progress})
+    for (std::string* path :
+         {&arguments.folder, &arguments.options.run.costs, &arguments.options.progress})
         if (!path->empty()) *path = fs::absolute(*path).lexically_normal().string();
     const fs::path manifest(arguments.manifest);
     if (manifest.string().starts_with("/dev/") || !manifest.has_parent_path()) return;
@@ -58,7 +57,8 @@ Json head(const BatchArguments& arguments, std::size_t items) {
             {"version", 1},
             {"manifest", arguments.manifest},
             {"shard",
-             {{"index", arguments.options.shard.index}, {"count", arguments.options.shard.count}}},
+             {{"index", arguments.options.run.shard.index},
+              {"count", arguments.options.run.shard.count}}},
             {"items", items}};
 }
 
@@ -83,10 +83,10 @@ void check(const BatchArguments& arguments, Globals& globals) {
     const jobs::BatchProgram program = batchProgram();
     const jobs::Manifest manifest = jobs::readManifest(arguments.manifest, program);
     if (refuse(manifest, arguments.manifest, globals)) return;
-    const auto items = jobs::itemsOfShard(manifest, program, arguments.options);
+    const auto items = jobs::itemsOfShard(manifest, program, arguments.options.run);
     Json document = head(arguments, items.size());
     std::string text = fmt::format("{}: {} items, no mistake\n", arguments.manifest, items.size());
-    if (arguments.list) {
+    if (arguments.options.list) {
         document["names"] = Json::array();
         for (const std::size_t i : items) {
             document["names"].push_back(manifest.items[i].name);
@@ -96,14 +96,14 @@ void check(const BatchArguments& arguments, Globals& globals) {
     globals.json ? printJson(document) : printText(text);
 }
 
-void run(BatchArguments& arguments, Globals& globals) {
-    jobs::BatchOptions& options = arguments.options;
+void run(const BatchArguments& arguments, Globals& globals) {
+    const jobs::BatchOptions& options = arguments.options.run;
     if (!options.shard.origin.empty())
         note(globals, fmt::format("shard {}/{} of the {}", options.shard.index, options.shard.count,
                                   options.shard.origin));
     jobs::BatchRun result;
     {
-        BatchProgress progress(globals, arguments.progress);
+        BatchProgress progress(globals, arguments.options.progress);
         result = jobs::runBatch(arguments.manifest, arguments.folder, batchProgram(), options,
                                 listenerFor(globals),
                                 [&](const jobs::BatchEvent& event) { progress.show(event); });
@@ -149,33 +149,34 @@ void survey(const BatchArguments& arguments, Globals& globals) {
     document["kept"] = document["done"];
     document["failures"] = failures;
     text += "\n";
-    if (arguments.merge) {
+    if (arguments.options.merge) {
         document["files"] = jobs::mergeBatch(items, arguments.folder, program,
-                                             arguments.mergeOptions, listenerFor(globals));
+                                             arguments.options.merging, listenerFor(globals));
         for (const auto& file : document["files"]) text += file.get<std::string>() + "\n";
     }
     globals.json ? printJson(document) : printText(text);
 }
 
 void runBatch(BatchArguments& arguments, Globals& globals) {
-    if (arguments.folder.empty() && !arguments.check)
+    jobs::BatchRequest& options = arguments.options;
+    if (arguments.folder.empty() && !options.check)
         throw UsageError("--output is missing: the folder of the results");
-    const int ways = arguments.check + arguments.status + arguments.merge;
-    if (ways > 1) throw UsageError("--check, --status and --merge: give one of them");
-    if (arguments.list && !arguments.check) throw UsageError("--list: give --check too");
-    arguments.options.shard = jobs::shardOf(arguments.shard);
-    arguments.options.processes = static_cast<std::size_t>(globals.threads);
-    arguments.options.memory = arguments.memory;
+    options.run.shard = jobs::shardOf(options.shard);
+    options.run.processes = static_cast<std::size_t>(globals.threads);
     enterFolderOf(arguments);
-    if (arguments.check)
+    if (options.check)
         check(arguments, globals);
-    else if (arguments.status || arguments.merge)
+    else if (options.status || options.merge)
         survey(arguments, globals);
     else
         run(arguments, globals);
 }
 
 }  // namespace
+
+OptionTables batchRows() {
+    return {jobs::batchOptions().rows};
+}
 
 void addBatch(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<BatchArguments>();
@@ -186,32 +187,7 @@ void addBatch(CLI::App& command, Globals& globals) {
         ->required();
     command.add_option("-o,--output", arguments->folder,
                        "Folder of the results, one folder for each item in its items/");
-    command
-        .add_option(
-            "--shard", arguments->shard,
-            "K/N: the share K of N, from 1; /N: K from the environment of Slurm, Kubernetes "
-            "or Open MPI")
-        ->default_str("from the environment, else 1/1");
-    command
-        .add_option("--memory", arguments->memory,
-                    "Bytes for all processes together, with a unit (8G)")
-        ->transform(CLI::AsSizeValue(false));
-    command.add_option("--costs", arguments->options.costs,
-                       "times.csv of an earlier merge, by which shards are weighed");
-    command.add_option("--progress", arguments->progress,
-                       "File to which a JSON line is added for each item, such as /dev/stderr");
-    command.add_flag("--force", arguments->options.force, "Do again what is done and valid");
-    command.add_flag("--check", arguments->check, "Check the manifest and run nothing");
-    command.add_flag("--list", arguments->list,
-                     "With --check: the names of the shard's items, the most costly first");
-    command.add_flag("--status", arguments->status, "Count what is done, failed, stale, missing");
-    command.add_flag("--merge", arguments->merge,
-                     "Write table.csv, table.jsonl, times.csv and index.html of all items");
-    command
-        .add_option("--thumbnails", arguments->mergeOptions.thumbnail,
-                    "With --merge: pixels of each material's sphere; 0: none")
-        ->check(CLI::Range(0, 512))
-        ->capture_default_str();
+    addOptions(command, jobs::batchOptions(), arguments->options);
     command.callback([arguments, &globals] { runBatch(*arguments, globals); });
 }
 

@@ -1,16 +1,14 @@
 #include "command.h"
 
 #include "command_table.h"
-#include "option_values.h"
 #include "outputs.h"
 #include "page.h"
 #include "standard_files.h"
+#include "within.h"
 
 #include <hshfit/error.h>
 #include <hshfit/files/json_fields.h>
 #include <hshfit/files/printable.h>
-
-#include <jobs/common/shared_options.h>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -36,7 +34,7 @@ void addCommand(CLI::App& app, Globals& globals, const Command& row) {
     command.add_flag("--json", globals.json, "Print a machine-readable answer to standard output");
     command.add_flag("--quiet", globals.quiet, "No progress and no notes on standard error");
     command.add_option("--threads", globals.threads, "Threads to use; 0: all cores")
-        ->check(CLI::Range(0, 4096));
+        ->check(within(jobs::Bounds<int>{0, 4096}));
     if (!row.add) {
         command.allow_extras();
         command.callback([&row] { throw UsageError(notBuilt(row.name, *row.wing)); });
@@ -44,38 +42,7 @@ void addCommand(CLI::App& app, Globals& globals, const Command& row) {
     }
     row.add(command, globals);
     addForce(command, globals);
-    stateRanges(command);
     acceptStandardStreams(command);
-}
-
-void addRgb(CLI::App& command, bool& rgb) {
-    command.add_flag("--rgb", rgb, std::string(jobs::rgbRow({}).help));
-}
-
-std::vector<double> parseNumbers(const std::string& text, std::size_t count,
-                                 std::string_view option, std::string_view form) {
-    std::vector<double> numbers;
-    const char *at = text.data(), *end = at + text.size();
-    for (bool more = true; more && numbers.size() < count;) {
-        double number = 0;
-        const auto [next, error] = std::from_chars(at, end, number);
-        if (error != std::errc() || !std::isfinite(number)) break;
-        numbers.push_back(number);
-        more = next != end && *next == ',' && numbers.size() < count;
-        at = more ? next + 1 : next;
-    }
-    if (numbers.size() != count || at != end)
-        throw UsageError(fmt::format("{} '{}': give {}", option, text, form));
-    return numbers;
-}
-
-Direction parseDirection(const std::string& text, std::string_view option, double mostTheta) {
-    const std::string form =
-        fmt::format("THETA,PHI in degrees, theta from 0 to {} (for example 45,0)", mostTheta);
-    const auto angles = parseNumbers(text, 2, option, form);
-    if (!(angles[0] >= 0 && angles[0] <= mostTheta))
-        throw UsageError(fmt::format("{} '{}': give {}", option, text, form));
-    return directionFromAngles(radians(angles[0]), radians(angles[1]));
 }
 
 namespace {

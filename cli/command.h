@@ -2,8 +2,6 @@
 
 #include "terminal.h"
 
-#include <hshfit/brdf/directions.h>
-
 #include <jobs/common/inputs.h>
 #include <jobs/common/listener.h>
 
@@ -34,17 +32,6 @@ struct Globals {
 
 /// Adds a command with the global options, its own, and its example below the help.
 void addCommand(CLI::App& app, Globals& globals, const Command& row);
-
-/// The option --rgb.
-void addRgb(CLI::App& command, bool& rgb);
-
-/// `count` finite numbers with commas between them. Throws UsageError that names `option` and asks
-/// for `form`.
-std::vector<double> parseNumbers(const std::string& text, std::size_t count,
-                                 std::string_view option, std::string_view form);
-
-/// "THETA,PHI" in degrees, theta from 0 to `mostTheta`. Throws UsageError naming `option`.
-Direction parseDirection(const std::string& text, std::string_view option, double mostTheta = 90);
 
 /// Prints a JSON document to standard output. Throws OutputError if it cannot be written.
 void printJson(const nlohmann::ordered_json& document);

@@ -1,7 +1,7 @@
 #include "command.h"
+#include "command_rows.h"
 #include "documents.h"
-
-#include <hshfit/error.h>
+#include "job_options.h"
 
 #include <jobs/studies/eval.h>
 
@@ -15,7 +15,7 @@ namespace hshfit::cli {
 namespace {
 
 struct EvalArguments {
-    std::string spec, wi, wo, pairs, output;
+    std::string spec, output;
     jobs::EvalOptions options;
 };
 
@@ -30,15 +30,12 @@ nlohmann::ordered_json factsJson(const jobs::Evaluated& found, const jobs::EvalO
 }
 
 void evaluateOne(const EvalArguments& arguments, const Globals& globals) {
-    const Direction wi = parseDirection(arguments.wi, "--wi");
-    const Direction wo = parseDirection(arguments.wo, "--wo", 180);
     const jobs::Evaluated found =
-        jobs::evaluatePair(arguments.spec, wi, wo, arguments.options, listenerFor(globals));
-    if (found.side.empty()) parseDirection(arguments.wo, "--wo");  // of a reflection, to 90
+        jobs::evaluatePair(arguments.spec, arguments.options, listenerFor(globals));
     if (globals.json) {
         auto answer = factsJson(found, arguments.options);
-        answer["wi"] = directionJson(wi);
-        answer["wo"] = directionJson(wo);
+        answer["wi"] = directionJson(arguments.options.wi->direction());
+        answer["wo"] = directionJson(arguments.options.wo->direction());
         answer["values"] = found.values;
         return printJson(answer);
     }
@@ -52,8 +49,8 @@ void evaluateOne(const EvalArguments& arguments, const Globals& globals) {
 }
 
 void evaluateAll(const EvalArguments& arguments, const Globals& globals) {
-    const jobs::EvaluatedPairs found = jobs::evaluatePairs(
-        arguments.spec, arguments.pairs, arguments.output, arguments.options, listenerFor(globals));
+    const jobs::EvaluatedPairs found = jobs::evaluatePairs(arguments.spec, arguments.output,
+                                                           arguments.options, listenerFor(globals));
     if (!globals.json) {
         if (arguments.output.empty()) printText(found.csv);
         return;
@@ -70,26 +67,21 @@ void evaluateAll(const EvalArguments& arguments, const Globals& globals) {
 
 }  // namespace
 
+OptionTables evalRows() {
+    return {jobs::evalOptions().rows};
+}
+
 void addEval(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<EvalArguments>();
     command.add_option("SPEC", arguments->spec, "BRDF or coefficient file")->required();
-    auto* wi = command.add_option("--wi", arguments->wi, "Incoming direction THETA,PHI, degrees");
-    auto* wo = command.add_option(
-        "--wo", arguments->wo,
-        "Outgoing direction THETA,PHI, degrees; of a transmission, theta from 90 to 180");
-    auto* pairs = command.add_option(
-        "--pairs", arguments->pairs,
-        "CSV of direction pairs: columns wi_x, wi_y, wi_z, wo_x, wo_y, wo_z; others are ignored");
+    addOptions(command, jobs::evalOptions(), arguments->options);
     command.add_option("-o,--output", arguments->output, "CSV to write (default: standard output)")
-        ->needs(pairs);
-    addRgb(command, arguments->options.rgb);
-    command.add_flag("--cosine", arguments->options.cosine, "Print f cos(theta_i) instead of f");
-    wi->needs(wo)->excludes(pairs);
-    wo->needs(wi)->excludes(pairs);
+        ->needs(command.get_option("--pairs"));
     command.callback([arguments, &globals] {
-        if (!arguments->pairs.empty()) return evaluateAll(*arguments, globals);
-        if (arguments->wi.empty()) throw UsageError("eval: give --wi and --wo, or --pairs");
-        evaluateOne(*arguments, globals);
+        if (arguments->options.pairs.empty())
+            evaluateOne(*arguments, globals);
+        else
+            evaluateAll(*arguments, globals);
     });
 }
 

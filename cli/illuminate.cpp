@@ -1,6 +1,6 @@
-#include "cache_options.h"
 #include "command.h"
-#include "within.h"
+#include "command_rows.h"
+#include "job_options.h"
 
 #include <hshfit/error.h>
 #include <hshfit/percent.h>
@@ -16,10 +16,8 @@ namespace hshfit::cli {
 namespace {
 
 struct IlluminateArguments {
-    std::string scene, output, method = "path";
-    double stops = 0;
+    std::string scene, output;
     jobs::IlluminateOptions options;
-    CacheArguments cache;
 };
 
 std::string textOf(const jobs::LitMaterial& material) {
@@ -73,10 +71,10 @@ std::string textOf(const jobs::IlluminatedCamera& camera) {
     return text;
 }
 
-void runIlluminate(IlluminateArguments& arguments, const Globals& globals) {
+void runIlluminate(const IlluminateArguments& arguments, const Globals& globals) {
     const jobs::Illuminated done = jobs::illuminate(arguments.scene, arguments.output,
                                                     arguments.options, listenerFor(globals));
-    if (globals.json) return printJson(jobs::illuminateJson(done, arguments.method));
+    if (globals.json) return printJson(jobs::illuminateJson(done));
     std::string text = fmt::format(
         "{}: {} triangles{}, prepared in {:.1f} s\n", done.scene, done.triangles,
         done.degenerate > 0 ? fmt::format(" and {} without area, left out", done.degenerate) : "",
@@ -86,21 +84,22 @@ void runIlluminate(IlluminateArguments& arguments, const Globals& globals) {
     printText(text);
 }
 
-/// Settings of the method.
-void choose(IlluminateArguments& arguments, bool samplesGiven) {
-    if (arguments.method == "path") return refuseCacheOptions(arguments.cache, arguments.method);
-    arguments.options.cache = cacheOptionsOf(arguments.cache);
-    arguments.options.chooseByCost = arguments.cache.choice == "cost";
-    if (!samplesGiven) arguments.options.path.samples = 16;
-    if (arguments.options.resume)
-        throw UsageError("--resume is for --method path; records are kept by --records FILE");
+/// Throws UsageError for an option of the other method.
+void refuseMisplaced(const CLI::App& command, jobs::IlluminateMethod method) {
+    for (const auto rows : illuminateRows())
+        if (const auto given = misplacedOption(command, rows, jobs::illuminateBit(method)))
+            throw UsageError(fmt::format("{} is for --method radiance-cache, not {}", given->name,
+                                         jobs::nameOf(method)));
 }
 
 }  // namespace
 
+OptionTables illuminateRows() {
+    return {jobs::illuminateOptions().rows, jobs::cacheOptions().rows};
+}
+
 void addIlluminate(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<IlluminateArguments>();
-    jobs::IlluminateOptions& options = arguments->options;
     command
         .add_option("SCENE", arguments->scene, "Materials, objects, lights and cameras, as JSON")
         ->required();
@@ -108,46 +107,10 @@ void addIlluminate(CLI::App& command, Globals& globals) {
         .add_option("-o,--output", arguments->output,
                     "Folder for the pictures: CAMERA.exr, with standard errors, and CAMERA.png")
         ->required();
-    command
-        .add_option("--method", arguments->method,
-                    "path: path tracing; radiance-cache: records of incident light on surfaces, "
-                    "by coefficients")
-        ->check(CLI::IsMember({"path", "radiance-cache"}))
-        ->capture_default_str();
-    command.add_option("--camera", options.camera, "Take this one alone (default: all)");
-    auto* samples =
-        command
-            .add_option(
-                "--samples", options.path.samples,
-                "Paths, or lines of sight, through each pixel (default: 64; radiance-cache: "
-                "16)")
-            ->check(within(jobs::bounds::pathSamples));
-    command.add_option("--bounces", options.path.mostBounces, "Reflections after which paths end")
-        ->check(within(jobs::bounds::mostBounces))
-        ->capture_default_str();
-    command
-        .add_option("--from-bounce", options.path.fewestBounces,
-                    "Leave out light of fewer reflections: 1 what is seen directly, 2 direct light "
-                    "too")
-        ->check(within(jobs::bounds::fewestBounces))
-        ->capture_default_str();
-    command.add_option("--seed", options.path.seed, "Seed of the random numbers")
-        ->capture_default_str();
-    command.add_option("--reference", options.reference,
-                       "OpenEXR picture that relative_mse is measured against; with one camera");
-    auto* exposure = command.add_option("--exposure", arguments->stops,
-                                        "Stops of the PNG files (default: automatic)");
-    command.add_flag("--resume", options.resume,
-                     "Keep finished rows in OUTPUT/.hshfit-CAMERA.partial until the picture is "
-                     "written, and go on from those of a run that was stopped");
-    command.add_flag("--force", options.force, "Replace existing files");
-    addCacheOptions(command, arguments->cache);
-    arguments->cache.all.push_back(command.add_option(
-        "--records", options.records,
-        "File of records: read if it stands, and written with those that are added"));
-    command.callback([arguments, exposure, samples, &globals] {
-        choose(*arguments, samples->count() > 0);
-        if (exposure->count() > 0) arguments->options.stops = arguments->stops;
+    addOptions(command, jobs::illuminateOptions(), arguments->options);
+    addOptions(command, jobs::cacheOptions(), arguments->options, "Radiance cache");
+    command.callback([arguments, &globals, &command] {
+        refuseMisplaced(command, arguments->options.method);
         runIlluminate(*arguments, globals);
     });
 }

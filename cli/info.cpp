@@ -8,6 +8,7 @@
 #include <hshfit/files/json_fields.h>
 
 #include <jobs/common/many.h>
+#include <jobs/common/shared_options.h>
 #include <jobs/studies/info.h>
 
 #include <fmt/format.h>
@@ -174,7 +175,7 @@ void addInfo(CLI::App& command, Globals& globals) {
                     "BRDF, light, coefficient file or file of an export; one or more, and of a "
                     "folder its measured and coefficient files")
         ->required();
-    addRgb(command, arguments->rgb);
+    command.add_flag("--rgb", arguments->rgb, std::string(jobs::rgbRow({}).help));
     command.callback([arguments, &globals] { runInfo(*arguments, globals); });
 }
 

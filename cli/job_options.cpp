@@ -1,6 +1,6 @@
 #include "job_options.h"
 
-#include <hshfit/error.h>
+#include "within.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -17,6 +17,11 @@ using jobs::OptionRow;
 
 std::string nameOf(const OptionRow& row) {
     return fmt::format("--{}", row.name);
+}
+
+/// With its other name.
+std::string namesOf(const OptionRow& row) {
+    return row.also.empty() ? nameOf(row) : fmt::format("--{},--{}", row.name, row.also);
 }
 
 std::string nameWithout(const OptionRow& row) {
@@ -44,35 +49,37 @@ public:
     void operator()(const jobs::Spelled& value) const {
         const std::string fallback = value.word(value.at);
         CLI::Option& option = added(command_.add_option_function<std::string>(
-            nameOf(row_), [value](const std::string& word) { value.set(value.at, word); }));
+            namesOf(row_), [value](const std::string& word) { value.set(value.at, word); }));
         if (!fallback.empty()) option.default_str(fallback);
     }
     /// Numbers that may be left out, and are given as 1e6, too.
     template <class Number>
     void operator()(std::optional<Number>* value) const {
         CLI::Option* option = command_.add_option_function<double>(
-            nameOf(row_), [value](double given) { *value = static_cast<Number>(given); });
-        if (row_.range) option->check(CLI::Range(row_.range->least, row_.range->most));
+            namesOf(row_), [value](double given) { *value = static_cast<Number>(given); });
+        checkRange<Number, double>(*option);
+        if constexpr (std::is_integral_v<Number>) option->check(whole())->type_name("UINT");
         added(option);
     }
     /// Several, with commas or by an option for each.
     template <class Element>
     void operator()(std::vector<Element>* value) const {
-        CLI::Option* option = command_.add_option(nameOf(row_), *value)->allow_extra_args(false);
+        CLI::Option* option = command_.add_option(namesOf(row_), *value)->allow_extra_args(false);
         if (row_.values.syntax == jobs::Syntax::list) option->delimiter(',');
         checkRange<Element>(*option);
-        if (!value->empty()) option->capture_default_str();
+        if (!value->empty() && !saysDefault()) option->capture_default_str();
         added(option);
     }
     template <class Value>
     void operator()(Value* value) const {
-        CLI::Option* option = command_.add_option(nameOf(row_), *value);
+        CLI::Option* option = command_.add_option(namesOf(row_), *value);
         checkRange<Value>(*option);
         if (*value != Value{}) option->capture_default_str();
         added(option);
     }
 
 private:
+    bool saysDefault() const { return row_.help.find("(default") != std::string_view::npos; }
     /// Two words, the first for true.
     void addWords(bool* value) const {
         const std::vector<jobs::Word> words = row_.values.words();
@@ -87,12 +94,15 @@ private:
         flag.description(std::string(help));
         return flag;
     }
-    template <class Value>
+    /// States the range, and lets numbers have their unit.
+    template <class Value, class Given = Value>
     void checkRange(CLI::Option& option) const {
         if constexpr (std::is_arithmetic_v<Value>) {
             if (row_.range)
-                option.check(CLI::Range(static_cast<Value>(row_.range->least),
-                                        static_cast<Value>(row_.range->most)));
+                option.check(within<Value, Given>(
+                    {static_cast<Value>(row_.range->least), static_cast<Value>(row_.range->most)}));
+            if (row_.unit == jobs::Unit::percent) option.transform(percents());
+            if (row_.unit == jobs::Unit::bytes) option.transform(CLI::AsSizeValue(false));
         }
     }
     /// States the help, the default in words and the choices.
@@ -113,12 +123,21 @@ private:
     const std::string& group_;
 };
 
+void relate(CLI::App& command, const OptionRow& row) {
+    if (row.needs.empty() && row.excludes.empty()) return;
+    CLI::Option* option = command.get_option(nameOf(row));
+    if (!row.needs.empty()) option->needs(command.get_option(fmt::format("--{}", row.needs)));
+    for (const std::string& other : CLI::detail::split(std::string(row.excludes), ' '))
+        if (!other.empty()) option->excludes(command.get_option("--" + other));
+}
+
 }  // namespace
 
 void addOptions(CLI::App& command, const std::vector<jobs::BoundOption>& options,
                 const std::string& group) {
     for (const jobs::BoundOption& option : options)
         std::visit(Adder(command, *option.row, group), option.value);
+    for (const jobs::BoundOption& option : options) relate(command, *option.row);
 }
 
 const OptionRow* rowOf(std::span<const OptionRow> rows, const CLI::Option& option) {

@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 
 struct LightArguments {
     std::vector<std::string> specs;
-    std::string output, normal;
+    std::string output;
     jobs::LightOptions options;
 };
 
@@ -132,12 +132,7 @@ std::string text(const jobs::ProjectedLight& result, const std::string& output) 
            (result.split ? splitText(*result.split) : "");
 }
 
-void runLight(LightArguments& arguments, Globals& globals) {
-    if (!arguments.normal.empty()) {
-        const Direction normal = parseDirection(arguments.normal, "--normal", 180);
-        arguments.options.normal =
-            Orientation{.theta = polarAngle(normal), .phi = azimuth(normal), .turn = 0};
-    }
+void runLight(const LightArguments& arguments, Globals& globals) {
     const jobs::ProjectedLight result =
         jobs::light(arguments.specs, arguments.output, arguments.options);
     for (const std::string& remark : result.remarks) note(globals, remark);
@@ -163,9 +158,6 @@ void addLight(CLI::App& command, Globals& globals) {
                     "PATH:convention=NAME of nine numbers (docs/explanation/irradiance.md)")
         ->required();
     command.add_option("-o,--output", arguments->output, "File of coefficients, .json")->required();
-    command.add_option("--normal", arguments->normal,
-                       "THETA,PHI in degrees: the hemisphere about it, in its own frame "
-                       "(default: the whole sphere)");
     addOptions(command, jobs::lightOptions(), arguments->options);
     command.callback([arguments, &globals] { runLight(*arguments, globals); });
 }

@@ -1,6 +1,6 @@
 #include "command.h"
-#include "rotation_options.h"
-#include "within.h"
+#include "command_rows.h"
+#include "job_options.h"
 
 #include <jobs/lighting/rotate.h>
 
@@ -15,32 +15,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct MatrixArguments {
-    std::string from, to, euler, weight;
-    int order = 3, fromOrder = 0;
-    bool condonShortley = false;
-};
-
-void runMatrix(const MatrixArguments& arguments, const Globals& globals) {
-    jobs::MatrixOptions options{
-        .from = arguments.from,
-        .to = arguments.to,
-        .fromOrder = arguments.fromOrder == 0 ? arguments.order : arguments.fromOrder,
-        .toOrder = arguments.order,
-        .condonShortley = arguments.condonShortley};
-    if (arguments.weight == "cosine") options.weight = Basis::Inner::projectedSolidAngle;
-    if (arguments.weight == "solid-angle") options.weight = Basis::Inner::solidAngle;
-    if (!arguments.euler.empty()) options.rotation = parseEuler(arguments.euler);
+void runMatrix(const jobs::MatrixOptions& options, const Globals& globals) {
     const auto rows = jobs::matrix(options);
     if (globals.json) {
         Json document = {{"format", "hshfit-matrix"},
                          {"version", 1},
-                         {"from", {{"basis", options.from}, {"order", options.fromOrder}}},
-                         {"to", {{"basis", options.to}, {"order", options.toOrder}}}};
-        if (!arguments.euler.empty())
-            document["euler"] = parseNumbers(arguments.euler, 3, "--euler", "A,B,C");
-        document["condon_shortley"] = arguments.condonShortley;
-        if (!arguments.weight.empty()) document["weight"] = arguments.weight;
+                         {"from", {{"basis", options.from}, {"order", options.orderOfFrom()}}},
+                         {"to", {{"basis", options.to}, {"order", options.order}}}};
+        if (options.euler)
+            document["euler"] = {options.euler->a, options.euler->b, options.euler->c};
+        document["condon_shortley"] = options.condonShortley;
+        if (options.weight) document["weight"] = jobs::weightName(*options.weight);
         document["matrix"] = rows;
         printJson(document);
         return;
@@ -58,26 +43,17 @@ void runMatrix(const MatrixArguments& arguments, const Globals& globals) {
 
 }  // namespace
 
+OptionTables matrixRows() {
+    return {jobs::matrixOptions().rows};
+}
+
 void addMatrix(CLI::App& command, Globals& globals) {
-    auto arguments = std::make_shared<MatrixArguments>();
-    command.add_option("FROM", arguments->from, "Basis of the columns (hshfit list bases)")
+    auto options = std::make_shared<jobs::MatrixOptions>();
+    command.add_option("FROM", options->from, "Basis of the columns (hshfit list bases)")
         ->required();
-    command.add_option("TO", arguments->to, "Basis of the rows")->required();
-    command.add_option("--order", arguments->order, "Bands of TO")
-        ->check(within(jobs::bounds::matrixOrder))
-        ->capture_default_str();
-    command
-        .add_option("--from-order", arguments->fromOrder, "Bands of FROM (default: those of TO)")
-        ->check(within(jobs::bounds::matrixOrder));
-    command.add_option("--euler", arguments->euler,
-                       "A,B,C in degrees: of the rotated function, R_z(A) R_y(B) R_z(C)");
-    command.add_flag("--condon-shortley", arguments->condonShortley,
-                     "Give functions of odd m the Condon-Shortley sign, in both bases");
-    command
-        .add_option("--weight", arguments->weight,
-                    "Of the integral: solid-angle or cosine (default: that of the basis TO)")
-        ->check(CLI::IsMember({"solid-angle", "cosine"}));
-    command.callback([arguments, &globals] { runMatrix(*arguments, globals); });
+    command.add_option("TO", options->to, "Basis of the rows")->required();
+    addOptions(command, jobs::matrixOptions(), *options);
+    command.callback([options, &globals] { runMatrix(*options, globals); });
 }
 
 }  // namespace hshfit::cli

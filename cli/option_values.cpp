@@ -23,15 +23,12 @@
 namespace hshfit::cli {
 namespace {
 
-/// Options of commands without rows, and of several syntaxes, that take several values as one word.
-constexpr std::string_view takeCommas[] = {"--halfway", "--light", "--outgoing", "--wi", "--wo"};
-
 bool takesCommas(const CLI::App& command, const std::string& name) {
     const CLI::Option* option = command.get_option_no_throw(name);
-    if (!option) return false;
-    const jobs::OptionRow* row = findRow(command, *option);
-    return (row && row->values.syntax == Syntax::list) || option->get_delimiter() == ',' ||
-           std::ranges::find(takeCommas, name) != std::end(takeCommas);
+    const jobs::OptionRow* row = option ? findRow(command, *option) : nullptr;
+    constexpr Syntax withCommas[] = {Syntax::list, Syntax::numbers, Syntax::outgoing,
+                                     Syntax::light};
+    return row && std::ranges::find(withCommas, row->values.syntax) != std::end(withCommas);
 }
 
 bool isNumber(std::string_view word) {
@@ -77,26 +74,6 @@ bool goesOn(const std::string& before, const std::string& word) {
 }
 
 }  // namespace
-
-void stateRanges(CLI::App& command) {
-    constexpr std::string_view opening = " in [", middle = " - ";
-    for (CLI::Option* option : command.get_options()) {
-        if (option->get_type_name().find(opening) == std::string::npos) continue;
-        CLI::Validator& validator = *option->get_validator(0);
-        const std::string description = validator.get_description();
-        const std::size_t begin = description.find(opening), gap = description.find(middle);
-        if (begin == std::string::npos || gap == std::string::npos) continue;
-        const std::size_t least = begin + opening.size(), most = gap + middle.size();
-        const std::string range =
-            fmt::format("{} to {}", description.substr(least, gap - least),
-                        description.substr(most, description.size() - 1 - most));
-        const CLI::Validator test = validator;
-        validator.operation([test, range](std::string& value) {
-            return test(value).empty() ? std::string()
-                                       : fmt::format("'{}' is not within {}", value, range);
-        });
-    }
-}
 
 void refuseSpacedLists(const CLI::App& app, const std::vector<std::string>& words) {
     const auto chosen = app.get_subcommands([&](const CLI::App* subcommand) {

@@ -9,9 +9,6 @@ class App;
 
 namespace hshfit::cli {
 
-/// Makes the ranges of a command's options say their ends in messages as they do in the help.
-void stateRanges(CLI::App& command);
-
 /// Throws UsageError where the values of one option that takes them with commas are given as words
 /// of their own ("--orders 3 5"), with what was meant ("--orders 3,5"). `words` follow the name of
 /// the program. A word that is a file is taken for a file.

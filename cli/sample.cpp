@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct SampleArguments {
-    std::string spec, outgoing = "45,0", output;
+    std::string spec, output;
     jobs::SampleOptions options;
 };
 
@@ -93,8 +93,7 @@ std::string textOf(const jobs::Sampled& done, const std::string& output) {
     return text;
 }
 
-void runSample(SampleArguments& arguments, const Globals& globals) {
-    arguments.options.outgoing = parseDirection(arguments.outgoing, "--outgoing");
+void runSample(const SampleArguments& arguments, const Globals& globals) {
     const jobs::Sampled done = jobs::sample(arguments.spec, arguments.output, arguments.options);
     if (!done.reflects)
         note(globals, "f is 0 at this outgoing direction: samples are drawn from the cosine");
@@ -112,8 +111,6 @@ void addSample(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<SampleArguments>();
     command.add_option("SPEC", arguments->spec, "BRDF, coefficient file or sidecar of an export")
         ->required();
-    command.add_option("--outgoing", arguments->outgoing, "Outgoing direction THETA,PHI, degrees")
-        ->capture_default_str();
     command.add_option("-o,--output", arguments->output,
                        "CSV of the directions, densities and weights");
     addOptions(command, jobs::sampleOptions(), arguments->options);

@@ -22,9 +22,7 @@ using Words = std::vector<Word>;
 
 using jobs::basisWords;
 using jobs::lightingWords;
-using jobs::lossWords;
 using jobs::modelWords;
-using jobs::splitWords;
 using jobs::withAll;
 using jobs::wordsOf;
 
@@ -48,16 +46,10 @@ Words helpWords() {
     return words;
 }
 
-Words rotationWords() {
-    return {{"exact"}, {"through-sh"}, {"table"}, {"paper-shift"}};
-}
-
 // A row for one command stands before the row for all.
 constexpr ValueRow valueRows[] = {
     {"batch", "MANIFEST", {nullptr, Syntax::word, Files::read, ""}},
     {"batch", "--output", {nullptr, Syntax::word, Files::folder}},
-    {"batch", "--costs", {nullptr, Syntax::word, Files::read}},
-    {"batch", "--progress", {nullptr, Syntax::word, Files::added}},
     {"choose", "--output", {nullptr, Syntax::word, Files::folder}},
     {"compare", "--output", {nullptr, Syntax::word, Files::folder}},
     {"convert", "--output", {nullptr, Syntax::word, Files::folder}},
@@ -81,25 +73,16 @@ constexpr ValueRow valueRows[] = {
     {"plot", "--output", {nullptr, Syntax::word, Files::written}},
     {"render", "--output", {nullptr, Syntax::word, Files::written, ".png"}},
     {"report", "--output", {nullptr, Syntax::word, Files::folder}},
-    {"rotate", "--method", {rotationWords}},
     {"sample", "--output", {nullptr, Syntax::word, Files::written, ".csv"}},
     {"stress", "--output", {nullptr, Syntax::word, Files::folder}},
     {"svbrdf", "DESCRIPTION", {nullptr, Syntax::word, Files::read, ".json"}},
     {"svbrdf", "--output", {nullptr, Syntax::word, Files::folder}},
     {"tradeoff", "--output", {nullptr, Syntax::word, Files::folder}},
     {"transfer", "--output", {nullptr, Syntax::word, Files::folder}},
-    {"", "--basis", {basisWords}},
     {"", "--compare-models", {modelWords, Syntax::sum}},
     {"", "--convention", {conventionWords}},
-    {"", "--light", {nullptr, Syntax::light, Files::read, ""}},
     {"", "--lighting", {lightingWords, Syntax::list}},
-    {"", "--loss", {lossWords}},
-    {"", "--mesh", {nullptr, Syntax::word, Files::read}},
     {"", "--output", {nullptr, Syntax::word, Files::written, ".json"}},
-    {"", "--pairs", {nullptr, Syntax::word, Files::read, ""}},
-    {"", "--records", {nullptr, Syntax::word, Files::added}},
-    {"", "--reference", {nullptr, Syntax::word, Files::read, ""}},
-    {"", "--source", {nullptr, Syntax::brdf, Files::read, ""}},
     {"", "A", {nullptr, Syntax::brdf, Files::read, ""}},
     {"", "B", {nullptr, Syntax::brdf, Files::read, ""}},
     {"", "BASIS", {basisWords}},
@@ -126,7 +109,7 @@ namespace {
 /// Null for what the type and the range of an option tell.
 const Values* statedIn(const Values& values) {
     const bool plain = values.syntax == Syntax::word || values.syntax == Syntax::list ||
-                       values.syntax == Syntax::outgoing;
+                       values.syntax == Syntax::numbers || values.syntax == Syntax::outgoing;
     return plain && !values.words && values.files == Files::none ? nullptr : &values;
 }
 

@@ -6,14 +6,40 @@
 #include <CLI/CLI.hpp>
 
 #include <charconv>
+#include <cmath>
 #include <string>
+#include <type_traits>
 
 namespace hshfit::cli {
 
-/// The check of an option whose bounds other front ends have too.
-template <class Number>
-CLI::Range within(const jobs::Bounds<Number>& bounds) {
-    return CLI::Range(bounds.least, bounds.most);
+/// The check of a number, which is given as `Given`; help and message state its ends alike.
+template <class Number, class Given = Number>
+CLI::Validator within(const jobs::Bounds<Number>& bounds) {
+    const auto text = [](Number end) {
+        if constexpr (std::is_integral_v<Number>)
+            return fmt::format("{}", end);
+        else
+            return fmt::format("{:g}", end);
+    };
+    const std::string least = text(bounds.least), most = text(bounds.most);
+    const auto check = [bounds, least, most](const std::string& given) {
+        Given number{};
+        const bool in = CLI::detail::lexical_cast(given, number) &&
+                        number >= static_cast<Given>(bounds.least) &&
+                        number <= static_cast<Given>(bounds.most);
+        return in ? std::string() : fmt::format("'{}' is not within {} to {}", given, least, most);
+    };
+    return {check, fmt::format("in [{} - {}]", least, most)};
+}
+
+/// The check of a whole number, 1e6 among them.
+inline CLI::Validator whole() {
+    const auto check = [](const std::string& given) {
+        double number = 0;
+        const bool is = CLI::detail::lexical_cast(given, number) && number == std::floor(number);
+        return is ? std::string() : fmt::format("'{}' is no whole number", given);
+    };
+    return {check, ""};
 }
 
 /// Lets "1%" stand for 0.01.
@@ -26,7 +52,7 @@ inline CLI::Validator percents() {
         if (error == std::errc() && next == end) text = fmt::format("{}", percent / 100);
         return std::string();
     };
-    return {convert, "", "percents"};
+    return {convert, ""};
 }
 
 }  // namespace hshfit::cli

@@ -1,8 +1,10 @@
 #include "arrays.h"
+#include "job_options.h"
 #include "watched.h"
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
+#include <hshfit/spelling.h>
 #include <hshfit/stop_request.h>
 
 #include <jobs/lighting/rotate.h>
@@ -13,6 +15,7 @@
 #include <algorithm>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace hshfit::python {
@@ -68,20 +71,26 @@ std::string reprOf(const Basis& basis) {
     return "<hshfit.Basis " + basis.name() + ", order " + std::to_string(basis.order()) + ">";
 }
 
-py::dict plotted(const std::string& basis, const py::object& path, int order,
-                 const std::string& domain, bool condonShortley) {
-    if (domain != "hemisphere" && domain != "sphere")
-        throw UsageError("domain: 'hemisphere' or 'sphere', not '" + domain + "'");
-    requireWithin("order", order, jobs::bounds::plotOrder);
+/// The domain is given by its name.
+Options optionsOf(jobs::PlotOptions& options) {
+    return without(boundOptions(jobs::plotOptions(), options), {"sphere"});
+}
+
+py::dict plotted(const std::string& basis, const py::object& path, const py::kwargs& keywords) {
+    jobs::PlotOptions options;
+    Keywords given(keywords);
+    given.set(optionsOf(options));
+    const py::object named = given.take("domain");
+    given.finish();
+    constexpr std::string_view domains[] = {"hemisphere", "sphere"};
+    const std::string domain = named.is_none() ? "hemisphere" : named.cast<std::string>();
+    if (std::ranges::find(domains, domain) == std::end(domains))
+        throw spelling::unknown("domain", domain, domains);
+    options.sphere = domain == "sphere";
     const std::string output = pathOf(path, "path");
     jobs::Plotted done;
-    watched(py::none(), {}, [&](const jobs::Listener&) {
-        done = jobs::plot(
-            basis, output,
-            {.order = order,
-             .domain = domain == "sphere" ? FigureDomain::sphere : FigureDomain::hemisphere,
-             .condonShortley = condonShortley});
-    });
+    watched(py::none(), {},
+            [&](const jobs::Listener&) { done = jobs::plot(basis, output, options); });
     py::dict out;
     out["basis"] = done.basis;
     out["order"] = done.order;
@@ -116,12 +125,18 @@ sources and the largest orders. Throws UsageError for others.)")
         .def("__call__", valuesOf, py::arg("directions"),
              "All functions at unit vectors (..., 3): (..., slots).")
         .def("__repr__", reprOf);
-    module.def(
-        "plot", plotted, py::arg("basis"), py::arg("path"), py::kw_only(),
-        py::arg("order") = jobs::PlotOptions{}.order, py::arg("domain") = "hemisphere",
-        py::arg("condon_shortley") = false,
-        R"(Draw the functions of a basis by gnuplot to a .png, .svg or .pdf (Fig. 10 of Gautron
-et al. 2004). OutputError without gnuplot.)");
+    jobs::PlotOptions options;
+    define(module,
+           {.name = "plot",
+            .before = "basis: str, path: Path",
+            .options = optionsOf(options),
+            .result = "Row",
+            .text = R"(Draw the functions of a basis by gnuplot to a .png, .svg or .pdf (Fig. 10 of
+Gautron et al. 2004), over the domain "hemisphere" (None) or "sphere". OutputError without
+gnuplot.)",
+            .others = {{"domain", "Optional[str]"}},
+            .progress = false},
+           plotted, py::arg("basis"), py::arg("path"));
 }
 
 }  // namespace hshfit::python

@@ -53,9 +53,8 @@ void save(const Value& value, const py::object& path,
 
 std::pair<std::shared_ptr<Coefficients>, py::dict> rotated(const Coefficients& c,
                                                            const Rotation& rotation,
-                                                           const std::string& method,
-                                                           double tolerance, int tables) {
-    const jobs::RotateOptions options = rotateOptions(rotation, method, tolerance, tables);
+                                                           const py::kwargs& keywords) {
+    const jobs::RotateOptions options = rotationBy(rotation, keywords);
     auto turned = std::make_shared<Coefficients>(c);
     jobs::Rotated done;
     watched(py::none(), {}, [&](const jobs::Listener&) { done = jobs::rotate(*turned, options); });
@@ -152,12 +151,6 @@ void bindPlain(py::module_& module) {
                 return std::make_shared<Reconstruction>(c);
             },
             "The reconstruction as a Brdf; values ring and may be negative.")
-        .def("rotate", rotated, py::arg("rotation"), py::kw_only(), py::arg("method") = "exact",
-             py::arg("tolerance") = HemisphereRotationOptions{}.tolerance,
-             py::arg("tables") = HemisphereRotationOptions{}.tables,
-             R"(For each outgoing direction the function over wi, rotated; what leaves the
-hemisphere is lost. Returns (Coefficients, {"method", "lost_energy", "error", "bands"}).
-method: "exact", "through-sh", "table" or "paper-shift".)")
         .def(
             "save",
             [](const Coefficients& c, const py::object& path) {
@@ -168,6 +161,11 @@ method: "exact", "through-sh", "table" or "paper-shift".)")
             return fmt::format("<hshfit.Coefficients {} order {}, {} directions, {}>", c.basis,
                                c.order, c.outgoing.size(), c.source);
         });
+    defineMethod(bound,
+                 rotateMethod("Coefficients", R"(For each outgoing direction the function over wi,
+rotated; what leaves the hemisphere is lost. Returns (Coefficients, {"method", "lost_energy",
+"error", "bands"}).)"),
+                 rotated, py::arg("rotation"));
 }
 
 std::vector<std::pair<std::string, double>> stepsOf(const Representation& form) {

@@ -77,7 +77,12 @@ struct Setter {
     }
     template <class Number>
     void operator()(std::vector<Number>* value) const {
-        *value = given.is_none() ? std::vector<Number>() : cast<std::vector<Number>>();
+        if (given.is_none())
+            value->clear();
+        else if (py::hasattr(given, "__iter__"))
+            *value = cast<std::vector<Number>>();
+        else
+            *value = {cast<Number>()};
         if (row.range)
             for (const Number each : *value) requireWithin(keyword.c_str(), each, *row.range);
     }
@@ -123,10 +128,13 @@ struct Stater {
     }
     template <class Number>
     std::string operator()(const std::vector<Number>* value) const {
-        return stated("Sequence[int]", py::tuple(py::cast(*value)));
+        const char* const type = std::is_integral_v<Number> ? "Union[int, Sequence[int]]"
+                                                            : "Union[float, Sequence[float]]";
+        return stated(type, py::tuple(py::cast(*value)));
     }
     std::string operator()(const std::vector<std::string>* value) const {
-        return stated("Names", py::tuple(py::cast(*value)));
+        const bool lights = row.values.syntax == jobs::Syntax::light;
+        return stated(lights ? "Lights" : "Names", py::tuple(py::cast(*value)));
     }
     std::string operator()(const std::string* value) const {
         switch (row.values.syntax) {
@@ -142,7 +150,9 @@ struct Stater {
                       value->empty() ? py::object(py::none()) : py::object(py::str(*value)));
     }
     std::string operator()(const jobs::Spelled& value) const {
-        return stated("str", py::str(value.word(value.at)));
+        const std::string word = value.word(value.at);
+        if (row.values.syntax != jobs::Syntax::numbers) return stated("str", py::str(word));
+        return stated("Numbers", word.empty() ? py::object(py::none()) : py::str(word));
     }
     template <class Value>
     std::string operator()(const Value* value) const {
@@ -189,6 +199,13 @@ Options only(Options options, std::initializer_list<std::string_view> names) {
         return std::ranges::find(names, option.row->name) == names.end();
     });
     return options;
+}
+
+void Keywords::dropNone() {
+    py::dict given;
+    for (const auto& [name, value] : left_)
+        if (!value.is_none()) given[name] = value;
+    left_ = given;
 }
 
 void Keywords::set(const Options& options) {
@@ -243,10 +260,13 @@ std::string docstring(const OptionFunction& function) {
     }
     for (const auto& [name, type] : function.others)
         signature += fmt::format(", {}: {} = None", name, type);
-    return fmt::format(
-        "{}, progress: Progress = None) -> {}\n\n{}\n{}\nprogress    called as progress(part, "
-        "done, total) from this thread; an exception from it stops",
-        signature, function.result, function.text, lines);
+    if (function.progress) {
+        signature += ", progress: Progress = None";
+        lines +=
+            "\nprogress    called as progress(part, done, total) from this thread; an exception "
+            "from it stops";
+    }
+    return fmt::format("{}) -> {}\n\n{}\n{}", signature, function.result, function.text, lines);
 }
 
 }  // namespace hshfit::python

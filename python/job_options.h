@@ -27,6 +27,8 @@ class Keywords {
 public:
     explicit Keywords(const py::dict& given) : left_(given.attr("copy")()) {}
 
+    /// Leaves out arguments that are None: they stand for what is not given.
+    void dropNone();
     /// Sets the options that are given. Throws UsageError for a value out of its range, and
     /// TypeError for one of another type.
     void set(const Options& options);
@@ -58,9 +60,21 @@ struct OptionFunction {
     std::string text;    ///< the beginning of the docstring
     /// Further arguments that are None where they are not given, with their types.
     std::vector<std::pair<std::string, std::string>> others = {};
+    bool progress = true;  ///< it takes that argument
 };
 /// The docstring: a signature as pybind11 writes it, the text, and a line for each option.
 std::string docstring(const OptionFunction& function);
+
+/// Defines it in a class; `arguments` are py::arg by place after self. The method takes py::kwargs
+/// last.
+template <class Function, class... Arguments>
+void defineMethod(const py::object& type, const OptionFunction& function, Function call,
+                  const Arguments&... arguments) {
+    py::options signatures;
+    signatures.disable_function_signatures();
+    type.attr(function.name) = py::cpp_function(call, py::name(function.name), py::is_method(type),
+                                                arguments..., docstring(function).c_str());
+}
 
 /// Defines it in the module; `arguments` are py::arg by place. The function takes py::kwargs last.
 template <class Function, class... Arguments>

@@ -69,9 +69,10 @@ std::vector<std::string> specificationsOf(const py::object& specs) {
     return texts;
 }
 
-/// The options of light(), but for the sun, which is split off with the name of a file.
+/// The options of light(), but for the normal, which may be an array, and the sun, which is split
+/// off with the name of a file.
 Options optionsOf(jobs::LightOptions& options) {
-    return without(boundOptions(jobs::lightOptions(), options), {"split-sun"});
+    return without(boundOptions(jobs::lightOptions(), options), {"normal", "split-sun"});
 }
 
 std::shared_ptr<Lit> projected(const py::object& specs, const py::kwargs& keywords) {
@@ -102,9 +103,8 @@ std::shared_ptr<Lit> projected(const py::object& specs, const py::kwargs& keywor
 }
 
 std::pair<std::shared_ptr<Lit>, py::dict> rotated(const Lit& lit, const Rotation& rotation,
-                                                  const std::string& method, double tolerance,
-                                                  int tables) {
-    const jobs::RotateOptions options = rotateOptions(rotation, method, tolerance, tables);
+                                                  const py::kwargs& keywords) {
+    const jobs::RotateOptions options = rotationBy(rotation, keywords);
     auto turned = std::make_shared<Lit>(Lit{.light = lit.light});
     jobs::Rotated done;
     watched(py::none(), {}, [&](const jobs::Listener&) {
@@ -160,10 +160,6 @@ light() and read().)")
             "Of light(split_sun=...): \"sun\", \"rest\" and their sum \"specification\", with\n"
             "what the command's JSON says of them; else None.")
         .def_property_readonly("source", [](const Lit& l) { return l.light.source; })
-        .def("rotate", rotated, py::arg("rotation"), py::kw_only(), py::arg("method") = "exact",
-             py::arg("tolerance") = HemisphereRotationOptions{}.tolerance,
-             py::arg("tables") = HemisphereRotationOptions{}.tables,
-             "Returns (Light, {\"method\", \"lost_energy\", \"error\", \"bands\"}).")
         .def(
             "save",
             [](const Lit& l, const py::object& path) {
@@ -176,6 +172,11 @@ light() and read().)")
             return fmt::format("<hshfit.Light {} order {}, {}>", l.light.basis, l.light.order,
                                l.light.source);
         });
+    defineMethod(module.attr("Light"),
+                 rotateMethod("Light",
+                              "Returns (Light, {\"method\", \"lost_energy\", \"error\", "
+                              "\"bands\"})."),
+                 rotated, py::arg("rotation"));
 }
 
 py::array_t<double> nineArray(const NineRgb& nine) {

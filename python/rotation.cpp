@@ -59,32 +59,50 @@ py::array_t<double> turned(const Rotation& rotation, const py::object& vectors) 
     return arrayOf(std::move(values), shape);
 }
 
-py::array_t<double> matrixOf(const std::string& from, const std::string& to, int fromOrder,
-                             int order, const py::object& rotation, bool condonShortley) {
-    requireWithin("order", order, jobs::bounds::matrixOrder);
-    if (fromOrder != 0) requireWithin("from_order", fromOrder, jobs::bounds::matrixOrder);
-    jobs::MatrixOptions options;
-    options.from = from;
-    options.to = to;
-    options.fromOrder = fromOrder > 0 ? fromOrder : order;
-    options.toOrder = order;
-    if (!rotation.is_none()) options.rotation = rotation.cast<const Rotation&>();
-    options.condonShortley = condonShortley;
+/// A Rotation is given in the place of three angles.
+Options optionsOf(jobs::MatrixOptions& options) {
+    return without(boundOptions(jobs::matrixOptions(), options), {"euler"});
+}
+
+py::array_t<double> matrixOf(const std::string& from, const std::string& to,
+                             const py::kwargs& keywords) {
+    jobs::MatrixOptions options{.from = from, .to = to};
+    Keywords given(keywords);
+    given.set(optionsOf(options));
+    if (const py::object rotation = given.take("rotation"); !rotation.is_none())
+        options.rotation = rotation.cast<const Rotation&>();
+    given.finish();
     std::vector<std::vector<double>> rows;
     watched(py::none(), {}, [&](const jobs::Listener&) { rows = jobs::matrix(options); });
     std::vector<double> values;
     for (const auto& row : rows) values.insert(values.end(), row.begin(), row.end());
-    return arrayOf(std::move(values), {order * order, options.fromOrder * options.fromOrder});
+    const int columns = options.orderOfFrom();
+    return arrayOf(std::move(values), {options.order * options.order, columns * columns});
+}
+
+/// The rotation itself is given as one.
+Options optionsOf(jobs::RotateOptions& options) {
+    return without(boundOptions(jobs::rotateOptions(), options), {"euler", "axis", "up"});
 }
 
 }  // namespace
 
-jobs::RotateOptions rotateOptions(const Rotation& rotation, const std::string& method,
-                                  double tolerance, int tables) {
-    requireWithin("tolerance", tolerance, jobs::bounds::rotationTolerance);
-    requireWithin("tables", tables, jobs::bounds::rotationTables);
-    return {.rotation = rotation,
-            .way = {.method = hemisphereMethod(method), .tolerance = tolerance, .tables = tables}};
+jobs::RotateOptions rotationBy(const Rotation& rotation, const py::kwargs& keywords) {
+    jobs::RotateOptions options{.rotation = rotation};
+    Keywords given(keywords);
+    given.set(optionsOf(options));
+    given.finish();
+    return options;
+}
+
+OptionFunction rotateMethod(const std::string& type, const std::string& text) {
+    jobs::RotateOptions options;
+    return {.name = "rotate",
+            .before = "self: " + type + ", rotation: Rotation",
+            .options = optionsOf(options),
+            .result = "Tuple[" + type + ", Row]",
+            .text = text,
+            .progress = false};
 }
 
 py::dict rotatedDict(const jobs::Rotated& done) {
@@ -119,13 +137,18 @@ matrix  (3, 3), orthonormal within 1e-6)")
             "__matmul__",
             [](const Rotation& second, const Rotation& first) { return second * first; },
             py::arg("first"), "This rotation after `first`.");
-    module.def(
-        "matrix", matrixOf, py::arg("from_basis"), py::arg("to_basis"), py::kw_only(),
-        py::arg("from_order") = 0, py::arg("order") = jobs::MatrixOptions{}.toOrder,
-        py::arg("rotation") = py::none(), py::arg("condon_shortley") = false,
-        R"(The change of basis (order^2, from_order^2), from_order 0 being order; with a Rotation
-from the coefficients of a function to those of the rotated function. UsageError for bases that it
-does not have.)");
+    jobs::MatrixOptions options;
+    define(module,
+           {.name = "matrix",
+            .before = "from_basis: str, to_basis: str",
+            .options = optionsOf(options),
+            .result = "Floats",
+            .text = R"(The change of basis (order^2, from_order^2), from_order 0 being order; with a
+Rotation from the coefficients of a function to those of the rotated function. UsageError for bases
+that it does not have.)",
+            .others = {{"rotation", "Optional[Rotation]"}},
+            .progress = false},
+           matrixOf, py::arg("from_basis"), py::arg("to_basis"));
 }
 
 }  // namespace hshfit::python

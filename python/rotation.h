@@ -1,6 +1,6 @@
 #pragma once
 
-#include "module.h"
+#include "job_options.h"
 
 #include <jobs/lighting/rotate.h>
 
@@ -8,9 +8,10 @@
 
 namespace hshfit::python {
 
-/// Throws UsageError for an unknown method.
-jobs::RotateOptions rotateOptions(const Rotation& rotation, const std::string& method,
-                                  double tolerance, int tables);
+/// Throws as Keywords does.
+jobs::RotateOptions rotationBy(const Rotation& rotation, const py::kwargs& keywords);
+/// The method rotate of a class of coefficients.
+OptionFunction rotateMethod(const std::string& type, const std::string& text);
 /// {"method", "lost_energy", "error", "bands"}
 py::dict rotatedDict(const jobs::Rotated& done);
 

@@ -167,7 +167,7 @@ std::map<std::string, std::string> drawThumbnails(const std::vector<ItemStatus>&
         SphereSheetOptions options;
         options.size = pixels;
         options.samples = samplesAlong;
-        renderSpheres({specs[i]}, (folder / "thumbnails" / names[i]).string(), options);
+        render({specs[i]}, (folder / "thumbnails" / names[i]).string(), options);
     });
     for (const auto& [name, spec] : inputs)
         if (fs::exists(folder / "thumbnails" / name, error)) shown[name] = spec;

@@ -20,10 +20,10 @@ struct Spelled {
 };
 
 /// A member of an options struct, where front ends read its default and set its value.
-using OptionValue =
-    std::variant<bool*, std::optional<bool>*, int*, std::size_t*, double*,
-                 std::optional<std::size_t>*, std::optional<double>*, std::string*,
-                 std::vector<std::string>*, std::vector<int>*, std::vector<std::size_t>*, Spelled>;
+using OptionValue = std::variant<bool*, std::optional<bool>*, int*, std::size_t*, double*,
+                                 std::optional<std::size_t>*, std::optional<double>*, std::string*,
+                                 std::vector<std::string>*, std::vector<int>*,
+                                 std::vector<std::size_t>*, std::vector<double>*, Spelled>;
 
 /// The way to the member in a struct of the type `owner`.
 struct Member {
@@ -56,6 +56,17 @@ constexpr Member at = {&typeid(decltype(ownerOf(First))), [](void* options) -> O
                            return &memberIn<First, Rest...>(options);
                        }};
 
+template <class Type>
+concept Optional = requires(Type& value) {
+    value.reset();
+};
+
+/// For `spelled`: the default has no word, or is told in words (OptionRow::fallback).
+template <class Type>
+std::string untold(const Type&) {
+    return {};
+}
+
 /// The same of a member that `parse` reads and `name` writes as a word.
 template <auto parse, auto name, auto First, auto... Rest>
 constexpr Member spelled = {
@@ -65,19 +76,17 @@ constexpr Member spelled = {
         return Spelled{&member,
                        [](const void* at) {
                            const auto& value = *static_cast<const Type*>(at);
-                           if constexpr (std::is_enum_v<Type>)
-                               return std::string(name(value));
-                           else
+                           if constexpr (Optional<Type>)
                                return value ? std::string(name(*value)) : std::string();
+                           else
+                               return std::string(name(value));
                        },
                        [](void* at, const std::string& word) {
                            auto& value = *static_cast<Type*>(at);
-                           if constexpr (std::is_enum_v<Type>)
-                               value = parse(word);
-                           else if (word.empty())
-                               value.reset();
-                           else
-                               value = parse(word);
+                           if constexpr (Optional<Type>) {
+                               if (word.empty()) return value.reset();
+                           }
+                           value = parse(word);
                        }};
     }};
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <typeinfo>
 #include <vector>
 
@@ -32,11 +33,19 @@ enum class Files {
 enum class Syntax {
     word,      ///< one of the words
     list,      ///< several, with commas
+    numbers,   ///< with commas, one value
     sum,       ///< several, with '+'
     outgoing,  ///< a set of outgoing directions
     brdf,      ///< a specification of a BRDF
     light,     ///< a specification of a light
     either,
+};
+
+/// Other ways to state a number.
+enum class Unit {
+    none,
+    percent,  ///< 1% is 0.01
+    bytes,    ///< 8G, on the command line alone
 };
 
 /// The values of an option, beside those that its type and range state.
@@ -65,38 +74,47 @@ struct OptionRow {
     std::string_view fallback = {};  ///< the default in words, where the member does not tell it
     std::string_view keyword = {};   ///< of Python, where it is another word
     unsigned inputs = ~0U;           ///< kinds of inputs that it is for, bits of the job's own
+    Unit unit = Unit::none;
+    std::string_view also = {};  ///< another name on the command line
+    /// An option that it is given with, and one or more, with spaces, that it excludes.
+    std::string_view needs = {}, excludes = {};
 
+private:
+    template <class Value>
+    constexpr OptionRow having(Value OptionRow::*member,
+                               const std::type_identity_t<Value>& value) const {
+        OptionRow row = *this;
+        row.*member = value;
+        return row;
+    }
+
+public:
     // The same row with more said.
     template <class Number>
     constexpr OptionRow within(const Bounds<Number>& bounds) const {
-        OptionRow row = *this;
-        row.range = {static_cast<double>(bounds.least), static_cast<double>(bounds.most)};
-        return row;
+        return having(&OptionRow::range, Bounds<double>{static_cast<double>(bounds.least),
+                                                        static_cast<double>(bounds.most)});
     }
-    constexpr OptionRow takes(const Values& what) const {
-        OptionRow row = *this;
-        row.values = what;
-        return row;
-    }
-    constexpr OptionRow orWithout(std::string_view help_) const {
-        OptionRow row = *this;
-        row.without = help_;
-        return row;
+    constexpr OptionRow takes(const Values& what) const { return having(&OptionRow::values, what); }
+    constexpr OptionRow orWithout(std::string_view said) const {
+        return having(&OptionRow::without, said);
     }
     constexpr OptionRow byDefault(std::string_view words) const {
-        OptionRow row = *this;
-        row.fallback = words;
-        return row;
+        return having(&OptionRow::fallback, words);
     }
     constexpr OptionRow inPython(std::string_view word) const {
-        OptionRow row = *this;
-        row.keyword = word;
-        return row;
+        return having(&OptionRow::keyword, word);
     }
-    constexpr OptionRow onlyFor(unsigned kinds) const {
-        OptionRow row = *this;
-        row.inputs = kinds;
-        return row;
+    constexpr OptionRow onlyFor(unsigned kinds) const { return having(&OptionRow::inputs, kinds); }
+    constexpr OptionRow in(Unit other) const { return having(&OptionRow::unit, other); }
+    constexpr OptionRow orNamed(std::string_view word) const {
+        return having(&OptionRow::also, word);
+    }
+    constexpr OptionRow with(std::string_view option) const {
+        return having(&OptionRow::needs, option);
+    }
+    constexpr OptionRow notWith(std::string_view options) const {
+        return having(&OptionRow::excludes, options);
     }
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <jobs/common/number_text.h>
 #include <jobs/common/option_row.h>
 
 #include <hshfit/brdf/brdf.h>
@@ -23,13 +24,12 @@ std::string sampleMethodName(SampleMethod method);
 
 struct SampleOptions {
     SampleMethod method = SampleMethod::best;
-    Direction outgoing = {};
+    Direction outgoing = Angles{45, 0}.direction();
     std::size_t count = 1000;  ///< directions that are kept
     std::uint64_t seed = 1;
     std::size_t elevations = 7;  ///< of the report, from 0 to 89 degrees; 0: none
     std::size_t trials = 20000;  ///< samples behind each row of the report
 };
-/// Without the outgoing direction.
 OptionRows<SampleOptions> sampleOptions();
 
 /// A sample and its weight f cos(theta_i) / pdf, per channel.

@@ -14,7 +14,16 @@ std::vector<Word> methodWords() {
             {"cosine"}};
 }
 
+Direction sampledDirection(const std::string& text) {
+    return anglesIn(text, "SampleOptions::outgoing").direction();
+}
+
 constexpr OptionRow sampleRows[] = {
+    OptionRow{"outgoing",
+              spelled<sampledDirection, options::untold<Direction>, &SampleOptions::outgoing>,
+              "Outgoing direction THETA,PHI, degrees"}
+        .takes({.syntax = Syntax::numbers})
+        .byDefault("45,0"),
     OptionRow{"count", at<&SampleOptions::count>, "Directions to draw"}.within(bounds::sampleCount),
     OptionRow{"method", spelled<sampleMethod, sampleMethodName, &SampleOptions::method>,
               "Densities to draw from: auto (the model's own; else proposal and table), table, "

@@ -23,7 +23,6 @@ struct LightOptions {
     bool wavelets = false;                   ///< the captured energy of the best SOHO wavelets too
     bool splitSun = false;                   ///< the sun of a picture and the rest beside the file
 };
-/// Without the hemisphere's normal.
 OptionRows<LightOptions> lightOptions();
 
 /// A picture as a sun and the rest.

@@ -1,6 +1,7 @@
 #include "irradiance.h"
 #include "light.h"
 
+#include <jobs/common/number_text.h>
 #include <jobs/common/option_words.h>
 
 namespace hshfit::jobs {
@@ -12,7 +13,17 @@ std::vector<Word> irradianceWindows() {
     return {{"none"}, {"hann"}, {"lanczos"}, {"least-negative"}};
 }
 
+Orientation normalIn(const std::string& text) {
+    const Direction normal = anglesIn(text, "LightOptions::normal", 180).direction();
+    return {.theta = polarAngle(normal), .phi = azimuth(normal), .turn = 0};
+}
+
 constexpr OptionRow lightRows[] = {
+    OptionRow{"normal",
+              options::spelled<normalIn, options::untold<Orientation>, &LightOptions::normal>,
+              "THETA,PHI in degrees: the hemisphere about it, in its own frame (default: the whole "
+              "sphere)"}
+        .takes({.syntax = Syntax::numbers}),
     OptionRow{"basis", at<&LightOptions::basis>, "sh; with --normal any of hshfit list bases"}
         .takes({.words = basisWords}),
     OptionRow{"order", at<&LightOptions::order>, "Number of bands: l = 0 .. order-1"}.within(

@@ -69,39 +69,48 @@ Rows product(const Rows& a, const Rows& b) {
 }
 
 Rows changeOf(const MatrixOptions& options) {
-    const auto from = bases::make(options.from, options.fromOrder);
-    const auto to = bases::make(options.to, options.toOrder);
+    const auto from = bases::make(options.from, options.orderOfFrom());
+    const auto to = bases::make(options.to, options.order);
     return rowsOf(BasisChange(*from, *to, options.weight).dense(),
                   static_cast<std::size_t>(from->slots()));
 }
 
 Rows unsignedMatrix(const MatrixOptions& options) {
-    const auto from = bases::make(options.from, options.fromOrder);
-    const auto to = bases::make(options.to, options.toOrder);
+    const auto from = bases::make(options.from, options.orderOfFrom());
+    const auto to = bases::make(options.to, options.order);
     const std::size_t entries =
         static_cast<std::size_t>(from->slots()) * static_cast<std::size_t>(to->slots());
     if (entries > largestMatrix)
         throw UsageError(fmt::format("a matrix of {} x {} entries; at most {} in all", to->slots(),
                                      from->slots(), largestMatrix));
-    if (!options.rotation) return changeOf(options);
+    if (!options.rotation && !options.euler) return changeOf(options);
     if (options.weight)
         throw UsageError(fmt::format("a rotation has no weight: leave out {}",
                                      Setting{"MatrixOptions::weight"}));
-    const Rotation& rotation = *options.rotation;
+    const Rotation rotation = options.rotation ? *options.rotation : options.euler->rotation();
     if (options.from == "sh") {
-        const Rows turned = shRotation(options.fromOrder, options.fromOrder, rotation);
-        if (options.to == "sh") return shRotation(options.toOrder, options.fromOrder, rotation);
+        const Rows turned = shRotation(options.orderOfFrom(), options.orderOfFrom(), rotation);
+        if (options.to == "sh") return shRotation(options.order, options.orderOfFrom(), rotation);
         return product(changeOf(options), turned);
     }
     if (options.to == "sh")
-        return product(shRotation(options.toOrder, options.toOrder, rotation), changeOf(options));
-    if (options.from != options.to || options.fromOrder != options.toOrder)
+        return product(shRotation(options.order, options.order, rotation), changeOf(options));
+    if (options.from != options.to || options.orderOfFrom() != options.order)
         throw UsageError(fmt::format(
             "a rotation from {} of order {} to {} of order {}: give one basis and order, or sh as "
             "one of the bases",
-            options.from, options.fromOrder, options.to, options.toOrder));
+            options.from, options.orderOfFrom(), options.to, options.order));
     return rowsOf(HemisphereRotation(*from).matrix(rotation),
                   static_cast<std::size_t>(from->slots()));
+}
+
+const Rotation& rotationOf(const RotateOptions& options) {
+    if (!options.rotation)
+        throw UsageError(fmt::format("no rotation; give one of {}, {} and {}",
+                                     Setting{"RotateOptions::euler", "A,B,C"},
+                                     Setting{"RotateOptions::axis", "X,Y,Z,ANGLE"},
+                                     Setting{"RotateOptions::up", "THETA,PHI"}));
+    return *options.rotation;
 }
 
 }  // namespace
@@ -121,12 +130,12 @@ Rotated rotate(Coefficients& c, const RotateOptions& options) {
         c.values[i] *= scaleOf(i);
         captured += c.values[i] * c.values[i];
     }
-    const HemisphereRotated rotated = rotation.rotate(options.rotation, c.values);
+    const HemisphereRotated rotated = rotation.rotate(rotationOf(options), c.values);
     for (std::size_t i = 0; i < c.values.size(); ++i) c.values[i] = rotated.values[i] / scaleOf(i);
     c.energy = leftOf(c.energy, captured, rotated.lostEnergy);
     if (options.way.method != HemisphereMethod::exact) c.error += rotated.error;
     c.isotropic = c.isotropic && c.outgoing.map == OutgoingSet::Map::elevations;
-    c.bilateral = c.bilateral && keepsMirrorPlane(options.rotation);
+    c.bilateral = c.bilateral && keepsMirrorPlane(*options.rotation);
     c.reciprocal = false;
     c.leastSquares.reset();
     c.source += " (rotated)";
@@ -144,12 +153,12 @@ Rotated rotate(LightCoefficients& light, const RotateOptions& options, const std
                             "exact rotates",
                             name));
         const ShRotation turn(light.order, {.condonShortley = light.condonShortley});
-        light.values = turn.rotate(options.rotation, light.values);
+        light.values = turn.rotate(rotationOf(options), light.values);
     } else {
         const auto basis =
             bases::make(light.basis, light.order, {.condonShortley = light.condonShortley});
         const HemisphereRotated rotated =
-            HemisphereRotation(*basis, options.way).rotate(options.rotation, light.values);
+            HemisphereRotation(*basis, options.way).rotate(rotationOf(options), light.values);
         double captured = 0;
         for (const double value : light.values) captured += value * value;
         light.values = rotated.values;
@@ -166,6 +175,7 @@ Rotated rotate(LightCoefficients& light, const RotateOptions& options, const std
 }
 
 Rotated rotate(const std::string& input, const std::string& output, const RotateOptions& options) {
+    rotationOf(options);
     if (auto nine = nineNumbers(input)) {
         const Rotated result = rotate(*nine, options, input);
         writeLight(*nine, output);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <jobs/common/option_row.h>
+
 #include <hshfit/coefficients/coefficients.h>
 #include <hshfit/coefficients/light_coefficients.h>
 #include <hshfit/rotation/hemisphere_rotation.h>
@@ -7,15 +9,24 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hshfit::jobs {
 
+/// Angles in degrees, R_z(a) R_y(b) R_z(c).
+struct EulerAngles {
+    double a = 0, b = 0, c = 0;
+
+    Rotation rotation() const { return Rotation::euler(radians(a), radians(b), radians(c)); }
+};
+
 struct RotateOptions {
-    Rotation rotation = {};
+    std::optional<Rotation> rotation = {};  ///< to be given
     /// Light on the whole sphere has `exact` alone.
     HemisphereRotationOptions way = {};
 };
+OptionRows<RotateOptions> rotateOptions();
 
 struct Rotated {
     std::string kind;  ///< "brdf" or "light"
@@ -43,13 +54,22 @@ Rotated rotate(LightCoefficients& light, const RotateOptions& options, const std
 
 struct MatrixOptions {
     std::string from, to;  ///< bases
-    int fromOrder = 3, toOrder = 3;
+    int order = 3;         ///< of `to`
+    int fromOrder = 0;     ///< 0: that of `to`
     std::optional<Rotation> rotation = {};
+    std::optional<EulerAngles> euler = {};  ///< the rotation, if there is none above
     /// Both bases with the Condon-Shortley sign, as in the source papers.
     bool condonShortley = false;
     /// Weight of the integral of a change of basis; none: the inner product of TO.
     std::optional<Basis::Inner> weight = {};
+
+    int orderOfFrom() const { return fromOrder > 0 ? fromOrder : order; }
 };
+/// Without the rotation as such.
+OptionRows<MatrixOptions> matrixOptions();
+
+/// "solid-angle" or "cosine".
+std::string_view weightName(Basis::Inner weight);
 
 /// Rows TO, columns FROM: the change of basis or, with a rotation, from the coefficients of a
 /// function to those of the rotated function. A rotation of different bases needs SH as one of

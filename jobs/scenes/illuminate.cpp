@@ -2,6 +2,7 @@
 
 #include <jobs/common/clock.h>
 
+#include "illuminate_options.h"
 #include "kept_rows.h"
 #include "record_picture.h"
 #include "scene_surfaces.h"
@@ -116,12 +117,12 @@ IlluminatedCamera pictured(const SurfaceScene& scene, std::span<const Light> lig
     }
     if (!options.reference.empty())
         result.reference = errorAgainst(readRgbExr(options.reference), picture, options.reference);
-    result.stops = options.stops.value_or(automaticExposure(picture));
+    result.stops = options.exposure.value_or(automaticExposure(picture));
     const std::vector<NamedPicture> more{{"error", &error}};
     files.write(camera.name + ".exr", [&](AtomicFile& file) {
         writeRgbExr(picture, more, file,
                     {{"hshfit:generator", std::string("hshfit ") + version},
-                     {"hshfit:method", cache ? "radiance-cache" : "path"},
+                     {"hshfit:method", std::string(nameOf(options.method))},
                      {"hshfit:samples", std::to_string(options.path.samples)}});
     });
     files.write(camera.name + ".png", rgbPng(picture, result.stops));
@@ -138,15 +139,6 @@ IlluminatedCamera pictured(const SurfaceScene& scene, std::span<const Light> lig
     return result;
 }
 
-CacheOptions cacheOptionsOf(const IlluminateOptions& options, const Listener& listener) {
-    CacheOptions cache = *options.cache;
-    cache.fewestBounces = options.path.fewestBounces;
-    cache.mostBounces = options.path.mostBounces;
-    cache.seed = options.path.seed;
-    cache.progress = listener.part("light on diffuse surfaces");
-    return cache;
-}
-
 /// Replaces the file if there is one: what it held is among the records.
 void writeKept(const RadianceCache& cache, const std::string& path, const std::string& key) {
     AtomicFile file(path, AtomicFile::Existing::always);
@@ -157,7 +149,7 @@ void writeKept(const RadianceCache& cache, const std::string& path, const std::s
 /// The light on surfaces, and the settings on which records depend.
 std::string keyOfRecords(const scene::Scene& read, const SceneSurfaces& surfaces,
                          const IlluminateOptions& options) {
-    const CacheOptions& cache = *options.cache;
+    const CacheOptions& cache = options.cache;
     return fmt::format("{} {} {} {} {} {}", lightKey(read, surfaces), cache.choice.basis,
                        cache.choice.order, cache.choice.loss,
                        cache.direct == DirectLight::gathered ? "gathered" : "sampled",
@@ -174,9 +166,10 @@ std::unique_ptr<RadianceCache> cacheOf(const SurfaceScene& scene, const CacheOpt
 }  // namespace
 
 Illuminated illuminate(const std::string& path, const std::string& folder,
-                       const IlluminateOptions& options, const Listener& listener) {
+                       const IlluminateOptions& asked, const Listener& listener) {
     const auto start = Clock::now();
-    Illuminated result{.scene = path};
+    const IlluminateOptions options = settled(asked);
+    Illuminated result{.scene = path, .method = options.method};
     const scene::Scene read = scene::readScene(path, scene::Purpose::transport);
     const std::vector<const Camera*> cameras = camerasOf(read, options.camera);
     if (!options.reference.empty() && cameras.size() > 1) {
@@ -193,20 +186,22 @@ Illuminated illuminate(const std::string& path, const std::string& folder,
     std::vector<std::unique_ptr<KeptRows>> kept;
     const std::string inputs = options.resume ? inputsKey(read, surfaces) : std::string();
     const std::string recordsKey =
-        options.cache && !options.records.empty() ? keyOfRecords(read, surfaces, options) : "";
+        options.caches() && !options.records.empty() ? keyOfRecords(read, surfaces, options) : "";
     const SurfaceScene scene(std::move(surfaces.materials), std::move(surfaces.objects),
                              read.lights);
     result.triangles = scene.triangles();
     std::unique_ptr<RadianceCache> cache;
-    if (options.cache) {
+    if (options.caches()) {
         const double cpu = cpuSeconds();
-        cache = cacheOf(scene, cacheOptionsOf(options, listener), options.records, recordsKey);
+        CacheOptions settings = options.cache;
+        settings.progress = listener.part("light on diffuse surfaces");
+        cache = cacheOf(scene, settings, options.records, recordsKey);
         // All cameras count, so that runs with one camera after the other choose as one run with
         // all.
         const std::vector<MaterialCost> costs =
             predictCosts(*cache, camerasOf(read, ""), options.path.samples);
         for (std::size_t k = 0; k < read.materials.size(); ++k) {
-            if (options.chooseByCost && costs[k].samplingIsCheaper())
+            if (options.chooseBy == RecordsBy::cost && costs[k].samplingIsCheaper())
                 cache->sample(k, costs[k].walks);
             const MaterialLight& light = cache->materials().materials[k];
             LitMaterial& lit = result.materials.emplace_back(

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <jobs/common/listener.h>
+#include <jobs/common/option_row.h>
 
 #include <hshfit/transport/path_tracer.h>
+#include <hshfit/transport/radiance_cache/cache.h>
 #include <hshfit/transport/radiance_cache/cost_prediction.h>
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,30 +12,51 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hshfit::jobs {
 
-/// Bytes of the records of a radiance cache, unless others are asked for: 256 MB.
-inline constexpr std::size_t defaultCacheBytes = 256'000'000;
+enum class IlluminateMethod { path, radianceCache };
+
+/// The grounds on which a material that has coefficients gets records: that predictCosts says they
+/// are cheaper than sampling, or its loss alone.
+enum class RecordsBy { cost, loss };
 
 struct IlluminateOptions {
+    IlluminateMethod method = IlluminateMethod::path;
     std::string camera = {};  ///< the one to take; empty: all of the scene
-    PathOptions path = {};    ///< its `progress` is not called: the listener is
-    /// Pictures by a radiance cache; then bounces, seed and samples are those of `path` too.
-    std::optional<CacheOptions> cache = {};
-    bool chooseByCost =
-        true;  ///< have materials sampled where predictCosts says that it is cheaper
+    /// Paths, or lines of sight, through each pixel; none: 64, and 16 by a radiance cache.
+    std::optional<std::size_t> samples = {};
+    PathOptions path = {};  ///< its `samples` are those above, and `progress` is not called
+    /// Of a radiance cache, whose bounces and seed are those of `path`.
+    CacheOptions cache = {};
+    RecordsBy chooseBy = RecordsBy::cost;
+    std::vector<std::string> without = {};  ///< terms of the cache that are left out, by name
+    bool published = false;                 ///< CacheOptions::asPublished
+    double memory = 256;                    ///< MB of its records, at most
     /// A file of records, read where it stands and written with those that were added; empty: none.
     std::string records = {};
     /// An OpenEXR picture of the same size that `relative_mse` is measured against; empty: none.
     std::string reference = {};
-    std::optional<double> stops = {};  ///< of PNG files; none: automatic
-    bool force = false;                ///< replace existing files
+    std::optional<double> exposure = {};  ///< stops of PNG files; none: automatic
+    bool force = false;                   ///< replace existing files
     /// Keep the finished rows of each camera in FOLDER/.hshfit-CAMERA.partial until the files are
     /// written, and take those that an earlier run kept there.
     bool resume = false;
+
+    bool caches() const { return method == IlluminateMethod::radianceCache; }
 };
+OptionRows<IlluminateOptions> illuminateOptions();
+/// Those of a radiance cache alone. OptionRow::inputs of both are bits of illuminateBit.
+OptionRows<IlluminateOptions> cacheOptions();
+
+constexpr unsigned illuminateBit(IlluminateMethod method) {
+    return 1U << static_cast<unsigned>(method);
+}
+
+/// "path" or "radiance-cache".
+std::string_view nameOf(IlluminateMethod method);
 
 /// The distance of a picture from a reference.
 struct ReferenceError {
@@ -75,6 +98,7 @@ struct LitMaterial {
 
 struct Illuminated {
     std::string scene;
+    IlluminateMethod method = IlluminateMethod::path;
     std::size_t triangles = 0, degenerate = 0;
     double preparationSeconds = 0;  ///< reading, samplers, the tree of the rays, the cache
     double cacheCpuSeconds = 0;     ///< of choosing for materials and of light on diffuse surfaces
@@ -89,8 +113,7 @@ struct Illuminated {
 Illuminated illuminate(const std::string& scene, const std::string& folder,
                        const IlluminateOptions& options, const Listener& listener = {});
 
-/// The answer of `illuminate` (docs/schemas/illuminate.schema.json); `method` is "path" or
-/// "radiance-cache".
-nlohmann::ordered_json illuminateJson(const Illuminated& done, const std::string& method);
+/// The answer of `illuminate` (docs/schemas/illuminate.schema.json).
+nlohmann::ordered_json illuminateJson(const Illuminated& done);
 
 }  // namespace hshfit::jobs

@@ -74,14 +74,14 @@ Json cameraJson(const IlluminatedCamera& camera) {
 
 }  // namespace
 
-Json illuminateJson(const Illuminated& done, const std::string& method) {
+Json illuminateJson(const Illuminated& done) {
     Json materials = Json::array(), cameras = Json::array();
     for (const LitMaterial& material : done.materials) materials.push_back(materialJson(material));
     for (const IlluminatedCamera& camera : done.cameras) cameras.push_back(cameraJson(camera));
     return {{"format", "hshfit-illuminate"},
             {"version", 1},
             {"scene", done.scene},
-            {"method", method},
+            {"method", nameOf(done.method)},
             {"triangles", done.triangles},
             {"degenerate", done.degenerate},
             {"preparation_seconds", done.preparationSeconds},

@@ -46,7 +46,7 @@ std::vector<Light> lightsOf(const RenderOptions& options, const View& view) {
 SurfacePoints pointsOf(const RenderOptions& options, const View& view, Rendered& result) {
     if (options.mesh.empty()) return spherePoints(view, options.size, options.samples);
     MeshFile file = readMesh(options.mesh);
-    if (options.meshYUp) turnUpright(file.mesh);
+    if (options.up == RenderOptions::Up::y) turnUpright(file.mesh);
     result.mesh = options.mesh;
     result.triangles = file.mesh.triangles.size();
     result.degenerate = file.degenerate;
@@ -180,7 +180,8 @@ public:
         : options_(options),
           listener_(listener),
           limit_(options.seconds),
-          view_(radians(options.viewTheta), radians(options.viewPhi), radians(options.fieldOfView)),
+          view_(radians(options.view.theta), radians(options.view.phi),
+                radians(options.fieldOfView)),
           columns_(columnsOf(options)),
           lights_(lightsOf(options, view_)),
           points_(pointsOf(options, view_, result)) {
@@ -326,7 +327,7 @@ Rendered render(const std::vector<std::string>& specs, const std::string& output
     renderer.open(expandInputs(specs, Members::both));
     AtomicFile file(output);
     renderer.light();
-    result.stops = options.stops ? *options.stops : renderer.automaticStops();
+    result.stops = options.exposure ? *options.exposure : renderer.automaticStops();
     SheetBuilder sheet(options, output.ends_with(".exr"), result);
     renderer.fill(sheet, result.stops);
     writeSheet(sheet.sheet(), result.stops, file, attributesOf(result));

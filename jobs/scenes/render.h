@@ -1,6 +1,7 @@
 #pragma once
 
 #include <jobs/common/listener.h>
+#include <jobs/common/number_text.h>
 
 #include <hshfit/pictures/sphere.h>
 #include <hshfit/rendering/lit_picture.h>
@@ -14,13 +15,14 @@ namespace hshfit::jobs {
 
 struct RenderOptions {
     enum class By { coefficients, integration, both };
+    enum class Up { y, z };
 
     /// Light specifications (light/catalog.h), which add up.
     std::vector<std::string> lights;
     /// Lights about the line of sight, and radiance from all around, in addition.
     SphereRig rig = {.lights = {}, .dome = 0};
-    std::string mesh;     ///< path; empty: a sphere
-    bool meshYUp = true;  ///< the file's +y is up, as usual for OBJ files and scans; else its +z
+    std::string mesh;  ///< path; empty: a sphere
+    Up up = Up::y;     ///< of the file, as usual for OBJ files and scans
     By by = By::both;
     std::vector<std::string> bases = {"hsh"};
     std::vector<int> orders = {10};
@@ -29,11 +31,11 @@ struct RenderOptions {
     std::string outgoing;
     /// Stops that are added to the exposure, a picture for each.
     std::vector<double> exposures = {0};
-    std::optional<double> stops = {};  ///< the exposure; none: automatic
+    std::optional<double> exposure = {};  ///< stops; none: automatic
     int size = 256;
-    int samples = 2;                     ///< n: n x n a pixel
-    double viewTheta = 75, viewPhi = 0;  ///< direction to the viewer in the world, degrees
-    double fieldOfView = 0;              ///< of perspective, degrees; 0: parallel lines of sight
+    int samples = 2;         ///< n: n x n a pixel
+    Angles view = {75, 0};   ///< direction to the viewer in the world
+    double fieldOfView = 0;  ///< of perspective, degrees; 0: parallel lines of sight
     /// Bound of the estimated relative error of integration at a point; none: 5 % of a picture by
     /// integration alone (docs/reference/render.md has real errors), and 0.5 % beside coefficients.
     std::optional<double> tolerance = {};

@@ -61,7 +61,7 @@ Json renderJson(const Rendered& rendered, const RenderOptions& options, const st
     document["lights"] = pointLightsJson(options.rig);
     for (const std::string& light : options.lights) document["lights"].push_back(light);
     document["dome"] = options.rig.dome;
-    document["view"] = {{"theta", options.viewTheta}, {"phi", options.viewPhi}};
+    document["view"] = {{"theta", options.view.theta}, {"phi", options.view.phi}};
     document["field_of_view"] = options.fieldOfView;
     document["mesh"] = nullptr;
     if (!rendered.mesh.empty()) {
@@ -72,19 +72,19 @@ Json renderJson(const Rendered& rendered, const RenderOptions& options, const st
     document["points"] = rendered.points;
     document["quantity"] = options.cosine ? "brdf_cosine" : "brdf";
     document["light_coefficients"] = "from samples about each normal";
-    document["exposure"] = {{"automatic", !options.stops}, {"stops", rendered.stops}};
+    document["exposure"] = {{"automatic", !options.exposure}, {"stops", rendered.stops}};
     document["pictures"] = Json::array();
     for (const RenderedPicture& picture : rendered.pictures)
         document["pictures"].push_back(pictureJson(picture));
     return document;
 }
 
-Json spheresJson(const SphereSheet& sheet, const SphereSheetOptions& options,
-                 const std::string& output) {
+Json renderJson(const SphereSheet& sheet, const SphereSheetOptions& options,
+                const std::string& output) {
     Json document = startDocument(output, options.size, options.samples);
     document["lights"] = pointLightsJson(options.rig);
     document["dome"] = options.rig.dome;
-    document["exposure"] = {{"automatic", !options.stops}, {"stops", sheet.stops}};
+    document["exposure"] = {{"automatic", !options.exposure}, {"stops", sheet.stops}};
     document["spheres"] = Json::array();
     for (const SphereSheet::Sphere& sphere : sheet.spheres)
         document["spheres"].push_back({{"brdf", sphere.brdf},

@@ -14,7 +14,7 @@ namespace hshfit::jobs {
 nlohmann::ordered_json renderJson(const Rendered& rendered, const RenderOptions& options,
                                   const std::string& output);
 /// The same of spheres under point lights.
-nlohmann::ordered_json spheresJson(const SphereSheet& sheet, const SphereSheetOptions& options,
-                                   const std::string& output);
+nlohmann::ordered_json renderJson(const SphereSheet& sheet, const SphereSheetOptions& options,
+                                  const std::string& output);
 
 }  // namespace hshfit::jobs

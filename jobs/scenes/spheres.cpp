@@ -13,8 +13,8 @@
 
 namespace hshfit::jobs {
 
-SphereSheet renderSpheres(const std::vector<std::string>& sources, const std::string& output,
-                          const SphereSheetOptions& options, const Listener& listener) {
+SphereSheet render(const std::vector<std::string>& sources, const std::string& output,
+                   const SphereSheetOptions& options, const Listener& listener) {
     checkSpheresPath(output);
     SphereSheet result;
     std::vector<SpherePicture> pictures;
@@ -41,7 +41,7 @@ SphereSheet renderSpheres(const std::vector<std::string>& sources, const std::st
                                      picture.notFinite));
         }
     }
-    result.stops = options.stops ? *options.stops : automaticExposure(pictures);
+    result.stops = options.exposure ? *options.exposure : automaticExposure(pictures);
     writeSpheres(pictures, result.stops, output, attributes);
     return result;
 }

@@ -15,7 +15,7 @@ struct SphereSheetOptions {
     SphereRig rig = {};
     int size = SphereOptions{}.size;        ///< pixels along a sphere's square
     int samples = SphereOptions{}.samples;  ///< n: n x n a pixel
-    std::optional<double> stops = {};       ///< the exposure; none: automatic
+    std::optional<double> exposure = {};    ///< stops; none: automatic
 };
 
 struct SphereSheet {
@@ -31,7 +31,7 @@ struct SphereSheet {
 /// Spheres of materials under point lights and a dome (renderSphere), side by side in `output`,
 /// .png or .exr. Folders stand for their measured files and coefficient files. Throws UsageError,
 /// InputError and OutputError.
-SphereSheet renderSpheres(const std::vector<std::string>& sources, const std::string& output,
-                          const SphereSheetOptions& options, const Listener& listener = {});
+SphereSheet render(const std::vector<std::string>& sources, const std::string& output,
+                   const SphereSheetOptions& options, const Listener& listener = {});
 
 }  // namespace hshfit::jobs

@@ -1,12 +1,14 @@
 #include "eval.h"
 
 #include <jobs/common/pair_file.h>
+#include <jobs/common/shared_options.h>
 #include <jobs/source/source.h>
 
 #include <hshfit/brdf/transmission.h>
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/stop_request.h>
+#include <hshfit/wording.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -34,6 +36,35 @@ Direction outgoingFor(bool through, const Direction& wo,
                         where()));
     return throughSurface(wo);
 }
+
+Angles incomingIn(const std::string& text) {
+    return anglesIn(text, "EvalOptions::wi", 90);
+}
+Angles outgoingIn(const std::string& text, double mostTheta) {
+    return anglesIn(text, "EvalOptions::wo", mostTheta);
+}
+Angles anyOutgoingIn(const std::string& text) {
+    return outgoingIn(text, 180);
+}
+
+constexpr OptionRow evalRows[] = {
+    OptionRow{"wi", options::spelled<incomingIn, anglesText, &EvalOptions::wi>,
+              "Incoming direction THETA,PHI, degrees"}
+        .takes({.syntax = Syntax::numbers})
+        .with("wo")
+        .notWith("pairs"),
+    OptionRow{"wo", options::spelled<anyOutgoingIn, anglesText, &EvalOptions::wo>,
+              "Outgoing direction THETA,PHI, degrees; of a transmission, theta from 90 to 180"}
+        .takes({.syntax = Syntax::numbers})
+        .with("wi")
+        .notWith("pairs"),
+    OptionRow{"pairs", options::at<&EvalOptions::pairs>,
+              "CSV of direction pairs: columns wi_x, wi_y, wi_z, wo_x, wo_y, wo_z; others are "
+              "ignored"}
+        .takes({.files = Files::read, .dash = ""}),
+    rgbRow(options::at<&EvalOptions::rgb>),
+    OptionRow{"cosine", options::at<&EvalOptions::cosine>, "Print f cos(theta_i) instead of f"},
+};
 
 std::vector<double> valuesAt(const Brdf& brdf, const Direction& wi, const Direction& wo,
                              const EvalOptions& options) {
@@ -149,6 +180,10 @@ private:
 
 }  // namespace
 
+OptionRows<EvalOptions> evalOptions() {
+    return {evalRows};
+}
+
 void evaluateArrays(const Brdf& brdf, const VectorArray& wi, const VectorArray& wo,
                     std::size_t count, double* out, const EvalOptions& options) {
     const std::size_t channels = brdf.channels().count();
@@ -172,10 +207,15 @@ void evaluateArrays(const Brdf& brdf, const VectorArray& wi, const VectorArray& 
                       tbb::simple_partitioner());
 }
 
-Evaluated evaluatePair(const std::string& source, const Direction& wi, const Direction& wo,
-                       const EvalOptions& options, const Listener& listener) {
+Evaluated evaluatePair(const std::string& source, const EvalOptions& options,
+                       const Listener& listener) {
+    if (!options.wi || !options.wo)
+        throw UsageError(fmt::format("give {} and {}, or {}", Setting{"EvalOptions::wi"},
+                                     Setting{"EvalOptions::wo"}, Setting{"EvalOptions::pairs"}));
     const auto brdf = openSource(source, options.rgb, Sides::eitherAndNamed);
     Evaluated result = factsOf(*brdf);
+    if (result.side.empty()) outgoingIn(anglesText(*options.wo), 90);
+    const Direction wi = options.wi->direction(), wo = options.wo->direction();
     const Direction leaving = outgoingFor(!result.side.empty(), wo, [&] {
         return fmt::format("{}: wo = {:.4g},{:.4g} degrees", source, degrees(polarAngle(wo)),
                            degrees(azimuth(wo)));
@@ -187,19 +227,18 @@ Evaluated evaluatePair(const std::string& source, const Direction& wi, const Dir
     return result;
 }
 
-EvaluatedPairs evaluatePairs(const std::string& source, const std::string& pairs,
-                             const std::string& output, const EvalOptions& options,
-                             const Listener& listener) {
+EvaluatedPairs evaluatePairs(const std::string& source, const std::string& output,
+                             const EvalOptions& options, const Listener& listener) {
     const auto brdf = openSource(source, options.rgb, Sides::eitherAndNamed);
     const bool through = transmits(*brdf);
     EvaluatedPairs result{.facts = factsOf(*brdf), .csv = {}};
     const auto columns = columnsOf(brdf->channels());
     std::string& csv = result.csv;
     csv = fmt::format("wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,{}\n", fmt::join(columns, ","));
-    readPairs(pairs, [&](const PairRow& row) {
+    readPairs(options.pairs, [&](const PairRow& row) {
         ++result.count;
         const Direction wo = outgoingFor(through, row.wo, [&] {
-            return fmt::format("{}: pair {}: wo_z = {}", pairs, result.count, row.cells[5]);
+            return fmt::format("{}: pair {}: wo_z = {}", options.pairs, result.count, row.cells[5]);
         });
         const auto values = valuesAt(*brdf, row.wi, wo, options);
         requireFinite(values, source, row.wi, row.wo);

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <jobs/common/listener.h>
+#include <jobs/common/number_text.h>
+#include <jobs/common/option_row.h>
 
 #include <hshfit/brdf/brdf.h>
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,7 +17,11 @@ namespace hshfit::jobs {
 struct EvalOptions {
     bool cosine = false;  ///< f cos(theta_i) instead of f
     bool rgb = false;     ///< wavelengths as linear Rec. 709
+    /// A pair of directions, or a CSV of pairs (readPairs).
+    std::optional<Angles> wi = {}, wo = {};
+    std::string pairs = {};
 };
+OptionRows<EvalOptions> evalOptions();
 
 struct Evaluated {
     std::string brdf;
@@ -23,11 +30,12 @@ struct Evaluated {
     std::vector<double> values = {};  ///< one per channel, in 1/sr
 };
 
-/// f at a pair of directions, of a source as in openSource; 0 below the horizon. Of a transmission,
-/// wo is below the surface, and an InputError is thrown where it is above. The listener hears
-/// why f is 0 (whyZero). Throws InputError, and NumericError where f is not finite.
-Evaluated evaluatePair(const std::string& source, const Direction& wi, const Direction& wo,
-                       const EvalOptions& options, const Listener& listener = {});
+/// f at the pair of directions, of a source as in openSource. Of a transmission, wo is below the
+/// surface, and an InputError is thrown where it is above. The listener hears why f is 0 (whyZero).
+/// Throws UsageError without both directions and for a reflection to below the surface, InputError,
+/// and NumericError where f is not finite.
+Evaluated evaluatePair(const std::string& source, const EvalOptions& options,
+                       const Listener& listener = {});
 
 /// Values at the pairs of a file; `facts.values` are those of all pairs, pair by pair.
 struct EvaluatedPairs {
@@ -36,12 +44,11 @@ struct EvaluatedPairs {
     std::string csv;
 };
 
-/// f at every pair of a CSV (readPairs), as a CSV: the pairs as they stand, then one column per
+/// f at every pair of the CSV, as a CSV: the pairs as they stand, then one column per
 /// wavelength, or r, g and b, which are equal for a grey BRDF. The text is also written to
 /// `output`, unless that is empty. Throws InputError and OutputError.
-EvaluatedPairs evaluatePairs(const std::string& source, const std::string& pairs,
-                             const std::string& output, const EvalOptions& options,
-                             const Listener& listener = {});
+EvaluatedPairs evaluatePairs(const std::string& source, const std::string& output,
+                             const EvalOptions& options, const Listener& listener = {});
 
 /// Vectors in memory of the caller: component j of vector k is at data[k * stride + j * step].
 /// A stride of 0 is one vector for all k.

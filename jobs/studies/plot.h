@@ -1,5 +1,7 @@
 #pragma once
 
+#include <jobs/common/option_row.h>
+
 #include <hshfit/pages/basis_figure.h>
 
 #include <string>
@@ -7,10 +9,13 @@
 namespace hshfit::jobs {
 
 struct PlotOptions {
-    int order = 4;  ///< bands to draw, or as many as the basis has
-    FigureDomain domain = FigureDomain::hemisphere;
+    int order = 4;        ///< bands to draw, or as many as the basis has
+    bool sphere = false;  ///< the whole sphere in place of the hemisphere
     bool condonShortley = false;
+
+    FigureDomain domain() const { return sphere ? FigureDomain::sphere : FigureDomain::hemisphere; }
 };
+OptionRows<PlotOptions> plotOptions();
 
 struct Plotted {
     std::string basis;

@@ -3,7 +3,6 @@
 #include "program.h"
 
 #include <cli/command_table.h>
-#include <cli/value_table.h>
 
 #include <brdfs/catalog.h>
 #include <hshfit/bases/catalog.h>
@@ -93,7 +92,6 @@ TEST_F(Completion, ArgumentsAreCountedPastOptionsAndTheirValues) {
     EXPECT_EQ(after({"nothing", ""}), std::set<std::string>{});
 }
 
-// Where the library has an enumeration and no table, the names stand in cli/value_table.cpp too.
 TEST_F(Completion, CompletesExactlyTheNamesThatMessagesCallKnown) {
     const std::pair<std::string, std::string> lines[] = {
         {"project lambert -o x.json --window", "project"},
@@ -119,21 +117,6 @@ TEST_F(Completion, CompletesExactlyTheNamesThatMessagesCallKnown) {
             known.insert(word);
         }
         EXPECT_EQ(after({command, option, ""}), known) << line << error;
-    }
-}
-
-TEST_F(Completion, EveryRowOfTheTableOfValuesIsForAnOptionThatIsThere) {
-    for (const cli::ValueRow& row : cli::valueTable()) {
-        bool found = false;
-        for (const cli::Command& command : cli::commands()) {
-            if (!row.command.empty() && row.command != command.name) continue;
-            const std::string help = run(std::string(command.name) + " --help").out;
-            std::istringstream words(help);
-            for (std::string word; words >> word && !found;)
-                found = word == row.option || word == std::string(row.option) + "," ||
-                        word == std::string(row.option) + "…";
-        }
-        EXPECT_TRUE(found) << row.command << " " << row.option;
     }
 }
 

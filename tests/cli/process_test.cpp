@@ -204,6 +204,7 @@ TEST_F(Process, RangesStateTheirEnds) {
     const std::string one = "project lambert -o " + path("c.json") + " --tolerance ";
     expectError(one + "1e-14", 2, "--tolerance: '1e-14' is not within 1e-13 to 1", 0);
     expectError(one + "many", 2, "'many' is not within 1e-13 to 1", 0);
+    expectError(one + "nan", 2, "'nan' is not within 1e-13 to 1", 0);
     expectError("report lambert --json --max-evaluations 1", 2, "is not within 1000 to 1e+12", 0);
     expectError("report lambert --json --max-order 0", 2, "'0' is not within 1 to 1000", 0);
     expectError("list --threads -1", 2, "'-1' is not within 0 to 4096", 0);

@@ -68,6 +68,10 @@ TEST_F(Cli, RenderRefusesInOneLine) {
     expectError("render lambert --light x,0" + to, 2, "x,0", 0);
     expectError("render lambert --exposure bright" + to, 2, "auto", 0);
     expectError("render lambert --size 4" + to, 2, "--size", 0);
+    expectError("render lambert --samples 2.5" + to, 2, "--samples: '2.5' is no whole number", 0);
+    expectError("render lambert --exposures 0,200" + to, 2, "'200' is not within -100 to 100", 0);
+    expectError("render lambert --error 60%" + to, 2, "'0.6' is not within 1e-06 to 0.5", 0);
+    expectError("render lambert --view 200,0" + to, 2, "theta from 0 to 180", 0);
     expectError("render lambret" + to, 2, "lambert", 0);
     expectError("render lambert -o " + path("absent/s.png"), 5, "absent", 0);
 }

@@ -144,7 +144,8 @@ TEST_F(Cli, RotateRefusesInOneLine) {
         run("project lambert -o " + path("a.json") + " --order 2 --outgoing 0,0 --quiet").code, 0);
     const std::string from = "rotate " + path("a.json") + " -o " + path("b.json");
     expectError(from, 2, "--euler", 1);
-    expectError(from + " --euler 0,1,0 --up 1,2", 2, "--axis", 1);
+    expectError(from + " --euler 0,1,0 --up 1,2", 2, "--euler and --up exclude one another", 1);
+    expectError(from + " --axis 0,0,1,9 --up 1,2", 2, "--axis and --up exclude one another", 1);
     for (const char* euler : {"1,2", "1,2,3,4", "x,1,2", "1,2,nan", "1,2,3,"}) {
         expectError(from + " --euler " + euler, 2, "A,B,C", 1);
     }

@@ -30,7 +30,6 @@ const std::set<std::string> plainTexts{"--axis",
                                        "--dispersion",
                                        "--euler",
                                        "--exposure",
-                                       "--exposures",
                                        "--extensions",
                                        "--font",
                                        "--font-size",
@@ -97,6 +96,19 @@ TEST_F(ValueTable, EveryOptionOfFreeTextStatesItsFilesOrNamesNone) {
         }
     }
     EXPECT_EQ(left, std::set<std::string>{});
+}
+
+/// A row of a job's own hides one of the table.
+TEST_F(ValueTable, EveryRowIsForAnOptionThatIsThereAndHasNoRowOfItsJob) {
+    for (const ValueRow& row : valueTable()) {
+        bool found = false;
+        for (const CLI::App* command : app_.get_subcommands({})) {
+            if (!row.command.empty() && row.command != command->get_name()) continue;
+            for (const CLI::Option* option : command->get_options())
+                found |= findValues(*command, *option) == &row.values;
+        }
+        EXPECT_TRUE(found) << row.command << " " << row.option;
+    }
 }
 
 TEST_F(ValueTable, FilesThatABatchWritesByOptionsAreNamedWithinTheItem) {

@@ -200,7 +200,7 @@ TEST_F(Studies, ImportWritesTheCoefficientsOfTheProgram) {
 }
 
 TEST_F(Studies, MatrixHasTheNumbersOfTheProgram) {
-    const auto rows = jobs::matrix({.from = "sh", .to = "hsh", .fromOrder = 3, .toOrder = 2});
+    const auto rows = jobs::matrix({.from = "sh", .to = "hsh", .order = 2, .fromOrder = 3});
     const json answer = json::parse(runProgram("matrix sh hsh --order 2 --from-order 3 --json"));
     EXPECT_EQ(rows.size(), 4u);
     EXPECT_EQ(answer["matrix"], json(rows));
@@ -221,8 +221,9 @@ TEST_F(Studies, SpheresAreThePictureOfTheProgram) {
         return jobs::ProgressCall();
     }};
     for (const std::string extension : {".png", ".exr"}) {
-        const jobs::SphereSheet sheet = jobs::renderSpheres(
-            {"lambert:kd=.5", "ggx:alpha=.4"}, path("job" + extension), {.size = 16}, listener);
+        const jobs::SphereSheet sheet =
+            jobs::render({"lambert:kd=.5", "ggx:alpha=.4"}, path("job" + extension),
+                         jobs::SphereSheetOptions{.size = 16}, listener);
         ASSERT_EQ(sheet.spheres.size(), 2u);
         EXPECT_EQ(sheet.spheres[1].column, 16u);
         EXPECT_EQ(parts.count(sheet.spheres[0].brdf), 1u);

@@ -59,6 +59,11 @@ class Kinds(program.InFolder):
                  r"project\(\) takes 1 by place \(brdf\); name the others"),
                 (lambda: hshfit.direction(1, 2, 3), r"direction\(\) takes 2 by place"),
                 (lambda: brdf.albedo(UP, tol=1e-3), r"did you mean 'tolerance'\?"),
+                (lambda: hshfit.render("lambert", "x.png", exposuer=1),
+                 r"render\(\) has no argument 'exposuer' \(did you mean 'exposure'\?\)"),
+                (lambda: hshfit.light("uniform", order=2).rotate(hshfit.Rotation(up=(1, 2)),
+                                                                 tabels=3),
+                 r"rotate\(\) has no argument 'tabels' \(did you mean 'tables'\?\)"),
                 (lambda: hshfit.tradeoff("lambert", zzz=1), r"'zzz'; it takes specs, folder, ")]:
             with self.subTest(message=message), self.assertRaisesRegex(TypeError, message) as got:
                 call()

@@ -267,6 +267,14 @@ class SameNumbers(program.InFolder):
         expected = self.json_of("rotate", "c.json", "-o", "theirs.json", "--up", "20,30")
         self.assertEqual(self.bytes_of("ours.json"), self.bytes_of("theirs.json"))
         self.assertEqual(cost["lost_energy"], expected["lost_energy"])
+        other, _ = found.rotate(hshfit.Rotation(up=(20, 30)), method="table", tables=11)
+        other.save("ours.json")
+        self.run_program("rotate", "c.json", "-o", "theirs.json", "--up", "20,30", "--method",
+                         "table", "--tables", "11", "--force")
+        self.assertEqual(self.bytes_of("ours.json"), self.bytes_of("theirs.json"))
+        matrix = hshfit.matrix("hsh", "sh", order=2, weight="cosine")
+        expected = self.json_of("matrix", "hsh", "sh", "--order", "2", "--weight", "cosine")
+        self.assertEqual(matrix.tolist(), expected["matrix"])
         matrix = hshfit.matrix("sh", "hsh", order=3, from_order=4)
         expected = self.json_of("matrix", "sh", "hsh", "--order", "3", "--from-order", "4")
         self.assertEqual(matrix.tolist(), expected["matrix"])
@@ -295,7 +303,7 @@ class SameNumbers(program.InFolder):
         options = ["render", "ggx:alpha=0.5", "--light", "uniform:", "--size", "8",
                    "--samples", "1", "--orders", "2,4", "--view", "60,10"]
         done = hshfit.render("ggx:alpha=0.5", "ours.exr", light="uniform:", size=8, samples=1,
-                             orders=[2, 4], view=(60, 10))
+                             orders=[2, 4], view=(60, 10), by=None)
         self.assertEqual(self.bytes_of("ours.exr"), self.bytes_from(*options, extension="exr"))
         expected = self.json_of(*options, "-o", "theirs.exr")
         expected["output"] = "ours.exr"
@@ -316,8 +324,12 @@ class SameNumbers(program.InFolder):
         times = {"seconds", "cpu_seconds", "preparation_seconds", "cache_cpu_seconds"}
         for method, options, words in [
                 ("path", {"samples": 1, "bounces": 2}, ["--samples", "1", "--bounces", "2"]),
-                ("radiance-cache", {"samples": 1, "rays": 64, "choose_by": "loss"},
-                 ["--samples", "1", "--rays", "64", "--choose-by", "loss"])]:
+                ("radiance-cache", {"samples": 1, "rays": 64, "choose_by": "loss", "basis": None},
+                 ["--samples", "1", "--rays", "64", "--choose-by", "loss"]),
+                ("radiance-cache", {"samples": 1, "rays": 64, "choose_by": "loss", "memory": 9.5,
+                                    "gradient": "none", "without": ["error-control"]},
+                 ["--samples", "1", "--rays", "64", "--choose-by", "loss", "--memory", "9.5",
+                  "--gradient", "none", "--without", "error-control"])]:
             ours = hshfit.illuminate(self.scene("box.json"), "ours", method=method, force=True,
                                      **options)
             theirs = self.json_of("illuminate", self.scene("box.json"), "-o", "theirs", "--method",

@@ -12,11 +12,12 @@ SOURCE = Path(__file__).parents[2] / "python" / "hshfit" / "__init__.pyi"
 
 
 def signature(doc, name):
-    """The lines of a stub, one for each argument; None for other functions."""
-    found = re.match(rf"{name}\((.*), progress: Progress = None\) -> (.+)\n", doc)
-    if not found:
+    """The lines of a stub, one for each argument; None for other functions, whose signatures are
+    those of pybind11 and know of objects alone."""
+    found = re.match(rf"{name}\((.*, \*, .*)\) -> (.+)\n", doc)
+    if not found or ": object" in found[1]:
         return None
-    arguments = re.split(r", (?=\w+: |\*)", found[1]) + ["progress: Progress = None"]
+    arguments = re.split(r", (?=\w+: |\*)", found[1])
     lines = [re.sub(r" = .*", " = ...", argument) for argument in arguments]
     return "".join([f"def {name}(\n", *(f"    {line},\n" for line in lines),
                     f") -> {found[2]}: ...\n"])
