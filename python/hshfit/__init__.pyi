@@ -724,6 +724,7 @@ def plan(
     costs: bool = ...,
     formulas: Names = ...,
     by_time: bool = ...,
+    seconds: Optional[float] = ...,
     progress: Progress = ...,
 ) -> Row: ...
 def choose(
