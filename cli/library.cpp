@@ -297,12 +297,21 @@ void runExport(const LibraryArguments& arguments, const Globals& globals) {
         document["left_out"] = exported.leftOut;
         document["components"] = exported.components;
         document["bytes"] = exported.bytes;
+        document["table"] = exported.table ? jobs::tableJson(*exported.table) : Json(nullptr);
         document["files"] = files;
         return printJson(document);
     }
     std::string text = fmt::format(
         "{}: {} materials over {} functions, {} bytes of texels each; {}\n", exported.name,
         exported.materials.size(), exported.components, exported.bytes, fmt::join(files, ", "));
+    if (exported.table) {
+        const jobs::ExportedTable& table = *exported.table;
+        text += fmt::format(
+            "  table of {} x {} x {} nodes, {} bytes: ln(f + 0.001) is off by {:.3g} at most, "
+            "{:.3g} in the mean; FLIP {:.3g}, of {} {:.3g}\n",
+            table.size.half, table.size.plane, table.size.horizon, table.bytes, table.error.largest,
+            table.error.mean, table.flip, table.material, table.largestFlip);
+    }
     if (!exported.leftOut.empty())
         text += fmt::format("  left out, with forms of their own: {}\n",
                             fmt::join(exported.leftOut, ", "));

@@ -53,6 +53,7 @@ show library learn ggx:alpha=.2,F0=.9/.6/.3 ggx:alpha=.3,F0=.8/.7/.6 ggx:alpha=.
 show library export out/studio.library --target glsl,bin -o out/studio --force
 holds "every material has its texels" \
     "$(number '@ materials over') == 7 && $(number 'functions, @ bytes') >= 56"
+holds "the table of the functions is within a tenth of f" "$(number 'off by @ at most') <= 0.1"
 
 echo
 echo "The plan is out/plan/plan.html; the table of the batch is out/batch/index.html;"

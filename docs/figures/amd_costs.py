@@ -114,15 +114,14 @@ def main(build, data):
             run(program, "library", "learn", *materials, "--components", str(count), "--bytes",
                 str(6 * count), "--limit", "1", "--limit-maximum", "10", "--limit-flip", "1", "-o",
                 path, "--force", "--quiet")
-            answer = json.loads(run(program, "library", "export", path, "-o", folder, "--target",
-                                    "glsl", "--force", "--json"))
-            shaders.add("library, %d components" % count,
-                        text("%s/%s" % (folder, answer["files"][0])),
-                        OF_LIBRARY)
-        run(program, "library", "export", path, "-o", folder, "--target", "glsl", "--own-sums",
-            "--force", "--quiet")
-        shaders.add("library, `--own-sums`", text("%s/%s" % (folder, answer["files"][0])),
-                    OF_LIBRARY)
+            for name, error in (("constants", "0"), ("table", "0.1")):
+                answer = json.loads(run(program, "library", "export", path, "-o", folder,
+                                        "--target", "glsl", "--table-error", error, "--force",
+                                        "--json"))
+                # The compiler takes a loop of unknown length to be taken once or a few times.
+                shader = text("%s/%s" % (folder, answer["files"][0])).replace(
+                    "int(bound.w)", str((count + 4) // 4))
+                shaders.add("library, %d components, %s" % (count, name), shader, OF_LIBRARY)
         for name, call, light in LIGHTING:
             fill = "for (int i = 0; i < light.length(); ++i) light[i] = inputs[2 * k + i].xyz;"
             shaders.add("lighting `%s`" % name, text("%s/lit_hsh_%s.glsl" % (folder, name)),

@@ -3,7 +3,6 @@
 rules.
 
     docs/figures/form_shaders.py build FILE.json…
-    docs/figures/form_shaders.py build LIBRARY.library…    instructions of libraries' shaders
 
 `build` is the folder of the build, with `hshfit`, `tests/gpu/shaders/shader_times` and
 `tests/gpu/forms/form_errors`. For each coefficient file: its bytes, its error and the largest
@@ -59,9 +58,9 @@ def compiled(snippet, body, folder, name):
     return code
 
 
-def instructions(snippet, folder, name="s", body=OF_FORM):
+def instructions(snippet, folder, name="s"):
     """Instructions within functions; leaves NAME.spv."""
-    code = compiled(snippet, body, folder, name)
+    code = compiled(snippet, OF_FORM, folder, name)
     text = subprocess.run(["spirv-dis", "--no-color", code], check=True, capture_output=True,
                           text=True).stdout
     inside, count = False, 0
@@ -140,21 +139,6 @@ def times(build, folder, names):
     return lines[0], [float(line.split()[-2]) for line in lines[1:]]
 
 
-def libraries(build, paths):
-    """Functions, bytes of texels of a material, and instructions of each library's shader."""
-    print(row(("library", "functions", "bytes a material", "instructions")))
-    print("|" + "---|" * 4)
-    with tempfile.TemporaryDirectory() as folder:
-        for path in paths:
-            answer = json.loads(subprocess.run(
-                [build + "/hshfit", "library", "export", path, "-o", folder, "--target", "glsl",
-                 "--force", "--json"], check=True, capture_output=True, text=True).stdout)
-            with open("%s/%s" % (folder, answer["files"][0]), encoding="ascii") as file:
-                count = instructions(file.read(), folder, body=OF_LIBRARY)
-            print(row(("`%s`" % os.path.basename(path), str(answer["components"]),
-                       str(answer["bytes"]), str(count))))
-
-
 def main(build, paths):
     print(row(COLUMNS))
     print("|" + "---|" * len(COLUMNS))
@@ -181,5 +165,4 @@ def main(build, paths):
 if __name__ == "__main__":
     if len(sys.argv) < 3:
         sys.exit(__doc__)
-    kind = libraries if all(path.endswith(".library") for path in sys.argv[2:]) else main
-    kind(sys.argv[1], sys.argv[2:])
+    main(sys.argv[1], sys.argv[2:])

@@ -1,5 +1,6 @@
 #include "library_export.h"
 
+#include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
 #include <hshfit/files/file_set.h>
 #include <hshfit/files/json_fields.h>
@@ -9,6 +10,7 @@
 #include <hshfit/material_library/library_file.h>
 #include <hshfit/material_library/log_terms.h>
 #include <hshfit/material_library/shared_functions.h>
+#include <hshfit/pictures/picture_error.h>
 #include <hshfit/version.h>
 
 #include <fmt/format.h>
@@ -17,6 +19,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <memory>
+#include <utility>
 
 namespace hshfit::jobs {
 namespace {
@@ -24,8 +28,8 @@ namespace {
 namespace ml = material_library;
 using Json = nlohmann::ordered_json;
 
-/// Materials whose values are among the tests.
-constexpr std::size_t testedMaterials = 8;
+/// Materials whose values are among the tests, and those of which pictures are drawn.
+constexpr std::size_t testedMaterials = 8, drawnMaterials = 64;
 
 gpu::SharedSums sumsOf(const ml::Library& library, ExportedLibrary& exported) {
     gpu::SharedSums sums{.functions = ml::sharedFunctions(library.basis),
@@ -53,11 +57,43 @@ Json array(const Direction& d) {
     return {d.x, d.y, d.z};
 }
 
+/// A material as its shader gives it.
+std::unique_ptr<Brdf> brdfOf(const ml::Library& library, const ExportedLibrary& exported,
+                             const gpu::SharedSums& sums, std::size_t n) {
+    if (sums.table) return std::make_unique<gpu::TabledBrdf>(sums, n);
+    return ml::open(library, *ml::find(library, exported.materials[n]), "material");
+}
+
+/// The bytes of a table, and the error of f by it.
+ExportedTable tableOf(const ml::Library& library, const ExportedLibrary& exported,
+                      const gpu::TabledLibrary& tabled) {
+    ExportedTable table{.size = tabled.sums.table->size(),
+                        .bytes = tabled.sums.table->texels().bytes.size(),
+                        .error = tabled.error};
+    const std::size_t count = exported.materials.size(), drawn = std::min(count, drawnMaterials);
+    std::vector<double> flips(drawn);
+    const auto material = [&](std::size_t n) { return n * count / drawn; };
+    eachInParallel(drawn, [&](std::size_t n) {
+        const ml::Material& exact = *ml::find(library, exported.materials[material(n)]);
+        flips[n] = pictureError(*ml::open(library, exact, exact.name),
+                                gpu::TabledBrdf(tabled.sums, material(n)))
+                       .flip.mean;
+    });
+    for (std::size_t n = 0; n < drawn; ++n) {
+        table.flip += flips[n] / static_cast<double>(drawn);
+        if (flips[n] < table.largestFlip) continue;
+        table.largestFlip = flips[n];
+        table.material = exported.materials[material(n)];
+    }
+    return table;
+}
+
 /// f of the first materials in pairs from the mirror direction to grazing ones.
-Json testsOf(const ml::Library& library, const ExportedLibrary& exported) {
+Json testsOf(const ml::Library& library, const ExportedLibrary& exported,
+             const gpu::SharedSums& sums) {
     Json tests = Json::array();
     for (std::size_t n = 0; n < std::min(testedMaterials, exported.materials.size()); ++n) {
-        const auto brdf = ml::open(library, *ml::find(library, exported.materials[n]), "material");
+        const auto brdf = brdfOf(library, exported, sums, n);
         for (const auto& [in, out, phi] :
              {std::array{0., 0., 0.}, std::array{30., 30., 180.}, std::array{45., 50., 170.},
               std::array{60., 20., 90.}, std::array{85., 80., 180.}, std::array{75., 75., 10.}}) {
@@ -73,7 +109,7 @@ Json testsOf(const ml::Library& library, const ExportedLibrary& exported) {
 }
 
 Json sidecarOf(const std::string& path, const ml::Library& library, const gpu::Texels& texels,
-               bool ownSums, const ExportedLibrary& exported,
+               const gpu::SharedSums& sums, const ExportedLibrary& exported,
                std::span<const gpu::ExportedFile> files) {
     Json materials = Json::array();
     for (const std::string& name : exported.materials) {
@@ -83,12 +119,18 @@ Json sidecarOf(const std::string& path, const ml::Library& library, const gpu::T
                              {"mean_log", material.error.meanLog},
                              {"flip", material.error.flip}});
     }
+    Json table = nullptr;
+    if (exported.table) {
+        table = tableJson(*exported.table);
+        table["sampling"] = {
+            {"filter", "linear"}, {"wrap", "clamp"}, {"mip", "none"}, {"lod", 0}, {"srgb", false}};
+        table["data"] = Json::parse(gpu::dataText(sums.table->texels(), "table"));
+    }
     return {{"format", "hshfit-gpu-library"},
             {"version", 1},
             {"generator", std::string("hshfit ") + version},
             {"library", path},
             {"value", "f = max(exp(min(Phi_0 + sum_k q_k Phi_k, top)) - offset, 0)"},
-            {"sums", ownSums ? "own" : "shared"},
             {"colorspace", "lin_rec709"},
             {"cos_included", false},
             {"unit", "1/sr"},
@@ -97,9 +139,17 @@ Json sidecarOf(const std::string& path, const ml::Library& library, const gpu::T
             {"texels_per_material", exported.bytes / 8},
             {"materials", materials},
             {"left_out", exported.leftOut},
+            {"table", table},
             {"sampling", {{"filter", "none"}, {"mip", "none"}, {"lod", 0}, {"srgb", false}}},
-            {"data", Json::parse(gpu::dataText(texels, "stream"))},
+            {"data", Json::parse(gpu::dataText(texels, "rows"))},
             {"files", Json::parse(gpu::filesText(files))}};
+}
+
+std::vector<std::pair<gpu::Role, const gpu::Texels*>> setsOf(const gpu::Texels& texels,
+                                                             const gpu::SharedSums& sums) {
+    std::vector<std::pair<gpu::Role, const gpu::Texels*>> sets{{gpu::Role::coefficients, &texels}};
+    if (sums.table) sets.emplace_back(gpu::Role::basis, &sums.table->texels());
+    return sets;
 }
 
 /// Throws UsageError for what a library cannot be.
@@ -119,6 +169,16 @@ std::vector<const gpu::Target*> targetsOf(const std::string& names) {
 
 }  // namespace
 
+Json tableJson(const ExportedTable& table) {
+    return {{"half", table.size.half},
+            {"plane", table.size.plane},
+            {"horizon", table.size.horizon},
+            {"bytes", table.bytes},
+            {"error", {{"largest", table.error.largest}, {"mean", table.error.mean}}},
+            {"flip",
+             {{"mean", table.flip}, {"largest", table.largestFlip}, {"material", table.material}}}};
+}
+
 bool holdsLibrary(const gpu::Target& target) {
     using Kind = gpu::Target::Kind;
     return target.kind == Kind::container || (target.kind == Kind::shader && target.name != "osl");
@@ -136,7 +196,11 @@ ExportedLibrary exportLibrary(const std::string& path, const std::string& folder
     if (exported.materials.empty())
         throw InputError(
             fmt::format("{}: none of its materials is in the basis; export them one by one", path));
-    if (options.ownSums) sums = gpu::foldedSums(sums);
+    if (options.tableError > 0) {
+        gpu::TabledLibrary tabled = gpu::tabledWithin(sums, options.tableError);
+        exported.table = tableOf(library, exported, tabled);
+        sums = std::move(tabled.sums);
+    }
     const gpu::Texels texels = gpu::materialTexels(sums);
     exported.bytes = sums.stride() * 4 * gpu::numberBytes(texels.number);
 
@@ -146,16 +210,15 @@ ExportedLibrary exportLibrary(const std::string& path, const std::string& folder
         if (target->kind == gpu::Target::Kind::container)
             containers.push_back(&gpu::findContainer(target->name));
     FileSet files(folder, options.force);
-    const Json tests = testsOf(library, exported);
+    const Json tests = testsOf(library, exported, sums);
     exported.textures = gpu::writeTexels(
-        {.sets = {{gpu::Role::coefficients, &texels}},
+        {.sets = setsOf(texels, sums),
          .facts = {{"form", "library"},
                    {"materials", std::to_string(exported.materials.size())},
-                   {"layout", "stream"}},
+                   {"layout", "rows"}},
          .sidecar =
              [&](std::span<const gpu::ExportedFile> written, std::optional<gpu::Role>) {
-                 Json sidecar =
-                     sidecarOf(path, library, texels, options.ownSums, exported, written);
+                 Json sidecar = sidecarOf(path, library, texels, sums, exported, written);
                  sidecar["tests"] = tests;
                  return gpu::readableSidecar(jsonText(sidecar));
              },

@@ -2,9 +2,13 @@
 
 #include <hshfit/gpu/containers/containers.h>
 #include <hshfit/gpu/containers/targets.h>
+#include <hshfit/gpu/forms/library_table.h>
 #include <hshfit/material_library/library.h>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,27 +18,46 @@ struct LibraryExportOptions {
     /// Languages and containers, with commas; all: those that hold a library.
     std::string targets = "bin,glsl,glsl-es,hlsl,metal,wgsl";
     std::string prefix = "hsh";  ///< of the names in shaders
-    bool ownSums = false;        ///< gpu::foldedSums: faster shaders, larger texels
+    /// The largest error of ln(f + 0.001) of a table of the functions (gpu::tabledWithin); 0: the
+    /// functions stand in the shader, without error but many times as slow. Ten percent is at the
+    /// worst pair; the mean is a twentieth of it.
+    double tableError = 0.1;
     bool force = false;
 };
 
 /// Whether a library can be this target: containers, and shaders but OSL's.
 bool holdsLibrary(const gpu::Target& target);
 
+/// A table of functions, and what f loses by it.
+struct ExportedTable {
+    gpu::TableSize size;
+    std::size_t bytes = 0;
+    gpu::TableError error;
+    /// FLIP of pictures with the table against those without: the mean over at most 64 materials,
+    /// and the largest with its material.
+    double flip = 0, largestFlip = 0;
+    std::string material = {};
+};
+
+/// The object "table" of answers and sidecars.
+nlohmann::ordered_json tableJson(const ExportedTable& table);
+
 struct ExportedLibrary {
     std::string name;                    ///< of the files
     std::vector<std::string> materials;  ///< by their number in the shader
     std::vector<std::string> leftOut;    ///< materials that are not in the basis
     std::size_t components = 0;
-    std::size_t bytes = 0;  ///< of the texels of one material
+    std::size_t bytes = 0;               ///< of the texels of one material
+    std::optional<ExportedTable> table;  ///< none: the functions stand in the shaders
     std::vector<gpu::ExportedFile> textures;
     std::vector<std::string> shaders;
 };
 
 /// Writes one shader for all materials that a library has in its basis, and their numbers as
-/// texels: NAME_hsh.glsl and so on, NAME.coef.…, NAME.hsh.json (which names the materials) and
-/// NAME_test.json, NAME being the library's. Throws InputError for a library without a basis or
-/// without a material in it, UsageError for targets that a library has not, OutputError.
+/// texels: NAME_hsh.glsl and so on, NAME.coef.…, NAME.basis.… with the table of the functions,
+/// NAME.hsh.json (which names the materials) and NAME_test.json, NAME being the library's. Throws
+/// InputError for a library without a basis or without a material in it, UsageError for targets
+/// that a library has not, NumericError as gpu::tabledWithin does, OutputError.
 ExportedLibrary exportLibrary(const std::string& path, const std::string& folder,
                               const LibraryExportOptions& options);
 

@@ -102,9 +102,10 @@ constexpr OptionRow libraryRows[] = {
         .takes({libraryTargetWords, Syntax::list})
         .inPython("targets")
         .onlyFor(of::exported),
-    OptionRow{"own-sums", at<&LibraryOptions::exporting, &LibraryExportOptions::ownSums>,
-              "export: texels with the coefficients of each material's own sum in place of its "
-              "coordinates: a faster shader, more bytes, rounded to halves"}
+    OptionRow{"table-error", at<&LibraryOptions::exporting, &LibraryExportOptions::tableError>,
+              "export: largest error of ln(f + 0.001) by the table of the functions; 0: the "
+              "functions as constants of the shader, exact and many times as slow"}
+        .within(Bounds<double>{0, 10})
         .onlyFor(of::exported),
     OptionRow{"prefix", at<&LibraryOptions::exporting, &LibraryExportOptions::prefix>,
               "export: of the names in shaders"}

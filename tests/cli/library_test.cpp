@@ -56,14 +56,47 @@ TEST_F(LibraryCommand, OneShaderForAllMaterials) {
     EXPECT_EQ(made["materials"].size(), 8u);
     EXPECT_EQ(made["left_out"].size(), 0u);
     EXPECT_EQ(made["components"], 6);
-    const std::vector<std::string> files{"a.coef.f16.bin", "a.coef.dds", "a_shop.glsl",
-                                         "a_shop.wgsl"};
+    const std::vector<std::string> files{"a.coef.f16.bin", "a.coef.dds",  "a.basis.f16.bin",
+                                         "a.basis.dds",    "a_shop.glsl", "a_shop.wgsl"};
     for (const std::string& file : files) EXPECT_FALSE(read(path("out/" + file)).empty()) << file;
     EXPECT_NE(read(path("out/a_shop.glsl")).find("vec3 shop_material(int material, vec3 wo"),
               std::string::npos);
     const Json sidecar = Json::parse(read(path("out/a.hsh.json")));
     EXPECT_EQ(sidecar["texels_per_material"], made["bytes"].get<int>() / 8);
+    EXPECT_EQ(sidecar["texels_per_material"], 1 + 3 * 2);  // seven functions with the mean
+    const Json &table = made["table"], &error = table["error"];
+    EXPECT_LE(error["largest"], 0.1);
+    EXPECT_LT(error["mean"], error["largest"]);
+    EXPECT_LE(table["flip"]["mean"], table["flip"]["largest"]);
+    EXPECT_LT(table["flip"]["largest"], 0.05);
+    const int nodes =
+        table["half"].get<int>() * table["plane"].get<int>() * table["horizon"].get<int>();
+    EXPECT_EQ(table["bytes"], 8 * 2 * nodes);
+    EXPECT_EQ(read(path("out/a.basis.f16.bin")).size(), table["bytes"].get<std::size_t>());
+    EXPECT_EQ(sidecar["table"]["data"]["width"], table["half"]);
+    EXPECT_EQ(sidecar["table"]["error"], error);
     ASSERT_EQ(sidecar["tests"].size(), 48u);
+    const Json& test = sidecar["tests"][2 * 6 + 1];  // 30 degrees on either side of the normal
+    const std::string name = sidecar["materials"][2]["name"];
+    const Answer value =
+        run("eval '" + path("a.library") + ":" + name + "' --wi 30,180 --wo 30,0 --json");
+    ASSERT_EQ(value.code, 0) << value.err;
+    const Json f = Json::parse(value.out)["values"];
+    for (std::size_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(std::log(test["value"][c].get<double>() + 1e-3),
+                    std::log(f[std::min(c, f.size() - 1)].get<double>() + 1e-3), error["largest"])
+            << name;
+}
+
+// Without a table the values to test by are those of `eval`, and there is one texture.
+TEST_F(LibraryCommand, ExportWritesFunctionsAsConstants) {
+    learn("a.library");
+    const Json made = answer("export " + path("a.library") + " -o " + path("out") +
+                             " --target bin,glsl --table-error 0");
+    EXPECT_TRUE(made["table"].is_null());
+    EXPECT_EQ(made["files"], Json({"a.coef.f16.bin", "a_hsh.glsl"}));
+    const Json sidecar = Json::parse(read(path("out/a.hsh.json")));
+    EXPECT_TRUE(sidecar["table"].is_null());
     const Json& test = sidecar["tests"][2 * 6 + 1];  // 30 degrees on either side of the normal
     const std::string name = sidecar["materials"][2]["name"];
     const Answer value =
@@ -74,21 +107,15 @@ TEST_F(LibraryCommand, OneShaderForAllMaterials) {
         EXPECT_NEAR(test["value"][c], f[std::min(c, f.size() - 1)], 1e-9) << name;
 }
 
-/// The texels of each material's own sum: as many whatever the number of components, of f alike.
-TEST_F(LibraryCommand, ExportWritesOwnSums) {
+TEST_F(LibraryCommand, ExportRefusesAnErrorBeyondTheFinestTable) {
     learn("a.library");
-    const std::string words = "library export " + path("a.library") + " --target bin,glsl --json";
-    const Answer shared = run(words + " -o " + path("shared")),
-                 own = run(words + " --own-sums -o " + path("own"));
-    ASSERT_EQ(own.code, 0) << own.err;
-    EXPECT_GT(Json::parse(own.out)["bytes"], Json::parse(shared.out)["bytes"]);
-    const Json a = Json::parse(read(path("shared/a.hsh.json"))),
-               b = Json::parse(read(path("own/a.hsh.json")));
-    EXPECT_EQ(a["sums"], "shared");
-    EXPECT_EQ(b["sums"], "own");
-    EXPECT_EQ(a["tests"], b["tests"]);
-    EXPECT_EQ(a["materials"], b["materials"]);
-    expectError("library list " + path("a.library") + " --own-sums", 2, "--own-sums", 3);
+    const Answer fine =
+        run("library export " + path("a.library") + " --table-error 1e-6 -o " + path("out"));
+    EXPECT_EQ(fine.code, 4);
+    EXPECT_EQ(std::count(fine.err.begin(), fine.err.end(), '\n'), 1) << fine.err;
+    EXPECT_NE(fine.err.find("is off by"), std::string::npos) << fine.err;
+    EXPECT_FALSE(fs::exists(path("out")));
+    expectError("library list " + path("a.library") + " --table-error 1", 2, "--table-error", 1);
 }
 
 TEST_F(LibraryCommand, ExportSaysWhatALibraryIsNot) {

@@ -14,7 +14,7 @@
 
 namespace hshfit::embedded {
 extern const std::string_view shader_basis, shader_ends, shader_turn;
-extern const std::string_view form_eval, form_glsl, form_glsl_es, form_glsl_functions,
+extern const std::string_view form_bounded, form_eval, form_glsl, form_glsl_es, form_glsl_functions,
     form_halfway_axes, form_header, form_hlsl, form_metal, form_osl, form_sums, form_wgsl;
 }  // namespace hshfit::embedded
 
@@ -77,6 +77,8 @@ void checkBlock(const FormPayload& payload, Storage storage) {
 
 void setStorage(const FormPayload& payload, Storage storage, data& page) {
     for (const auto& [each, name] : storages) page.set(std::string(name), each == storage);
+    page.set("place", fmt::format("(i) % {0}, (i) / {0}", payload.texels.width));
+    page.set("layer", "0");
     page.set("width", std::to_string(payload.texels.width));
     page.set("height", std::to_string(payload.texels.height));
     page.set("texels", std::to_string(payload.texelCount()));
@@ -124,6 +126,7 @@ void setPartials(std::string_view body, data& page) {
         {"evalBody", embedded::form_eval},
         {"halfwayAxes", embedded::form_halfway_axes},
         {"formBody", body},
+        {"boundedBody", embedded::form_bounded},
         {"glslFunctions", embedded::form_glsl_functions},
         {"basisBody", embedded::shader_basis},
         {"ends", embedded::shader_ends},
@@ -145,12 +148,14 @@ std::string formText(Language language, const FormPayload& payload, const std::s
     data page;
     setLanguageWords(language, prefix, page);
     page.set("letInt", std::string(words.letInt));
+    page.set("varInt", language == Language::wgsl ? "var" : "int");
     page.set("toInt", std::string(words.toInt));
     page.set("varVector", std::string(words.varVector));
     page.set("words3", std::string(words.words3));
     page.set("flat", language == Language::osl);
     page.set("function", "eval");
     page.set("materials", false);
+    page.set("table", false);
     setStorage(payload, body.storage, page);
     setChannels(body.channels, prefix, language, page);
     setHeader(payload, page);

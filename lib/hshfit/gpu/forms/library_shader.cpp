@@ -11,7 +11,7 @@
 #include <numbers>
 
 namespace hshfit::embedded {
-extern const std::string_view form_library;
+extern const std::string_view form_library, form_library_table;
 }  // namespace hshfit::embedded
 
 namespace hshfit::gpu::inline forms {
@@ -19,35 +19,21 @@ namespace {
 
 using kainjow::mustache::data;
 
-/// The functions as one with a coefficient for each of R, G and B, which are those of `values`.
-Representation inColours(const Representation& functions, std::vector<double> values) {
-    Representation colours = functions;
-    colours.head.channels = Channels::rgb();
-    auto& content = std::get<HalfwayArray>(colours.content);
-    content.halfway.shape[0] = 3;
-    content.halfway.values = std::move(values);
-    content.ceilings.assign(3, {});
-    return colours;
+/// Rows of a texture that every device takes; further materials go into further layers.
+constexpr int mostRows = 2048, rowBits = 11;
+static_assert(mostRows == 1 << rowBits);
+
+/// A row for each material.
+Texels rowsOf(const std::vector<double>& materials, std::size_t stride) {
+    const std::size_t count = materials.size() / (4 * stride), most = mostRows;
+    const std::size_t rows = std::min(count, most), layers = (count + most - 1) / most;
+    std::vector<double> values = materials;
+    values.resize(4 * stride * rows * layers, 0.0);
+    return encode(values, static_cast<int>(stride), static_cast<int>(rows), layers,
+                  Number::float16);
 }
 
-/// Phi_0 + sum_k q_k Phi_k of the three channels of a material.
-std::vector<double> ownSums(const SharedSums& sums, std::size_t material) {
-    const std::vector<double>& all = sums.functions.as<HalfwayArray>()->halfway.values;
-    const std::size_t count = all.size() / sums.functions.head.channels.count();
-    const double* const texels = &sums.materials[4 * sums.stride() * material];
-    std::vector<double> own;
-    for (std::size_t c = 0; c < 3; ++c) {
-        own.insert(own.end(), all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count));
-        for (std::size_t at = 0; at < sums.parts.size(); ++at) {
-            const double q = sums.parts[at].scale * texels[4 * at + c];
-            const double* const function = &all[sums.parts[at].function * count];
-            for (std::size_t t = 0; t < count; ++t) own[c * count + t] += q * function[t];
-        }
-    }
-    return own;
-}
-
-void fillMaterials(const SharedSums& sums, FormText& text) {
+void fillConstants(const SharedSums& sums, FormText& text) {
     fillHalfway(text);
     data parts{data::type::list};
     for (std::size_t at = 0; at < sums.parts.size(); ++at) {
@@ -58,63 +44,94 @@ void fillMaterials(const SharedSums& sums, FormText& text) {
         row.set("scale", scale == 1 ? data(false) : data(shaderNumber(scale)));
         parts.push_back(row);
     }
-    text.page.set("function", "material");
-    text.page.set("materials", true);
     text.page.set("parts", parts);
-    text.page.set("stride", std::to_string(sums.stride()));
     text.page.set("last", std::to_string(sums.stride() - 1));
-    const double unit = text.constants ? std::numbers::log2e : 1;
-    text.page.set("topScale", shaderNumber(sums.topStep * unit));
-    text.page.set("topFirst", shaderNumber(sums.topFirst * unit));
-    text.page.set("shared", sums.folded == 0);
-    if (sums.folded > 0) text.page.set("texelBase", "first + ");
-    text.page.set("offset", shaderNumber(sums.offset));
-    text.page.set("kind", sums.folded > 0
-                              ? fmt::format("library: {} materials, each its own sum", sums.count())
-                              : fmt::format("library: {} materials over {} functions", sums.count(),
-                                            sums.functions.head.channels.count() - 1));
-    text.page.set("orders", false);
-    text.page.set("numbers", std::to_string(sums.materials.size()));
-    text.page.set("bytes", std::to_string(text.payload.texels.bytes.size()));
-    text.page.set("channelNames", "R G B");
-    text.page.set("formula",
-                  sums.folded > 0
-                      ? "f = max(exp(min(Phi, top)) - offset, 0), Phi a sum of the material's own"
-                      : "f = max(exp(min(Phi_0 + sum_k q_k Phi_k, top)) - offset, 0)");
     text.cost.products += 3 * (sums.parts.size() + 1);
     text.cost.fetches = sums.stride();
 }
 
+void fillTable(const FunctionTable& table, FormText& text) {
+    const auto number = [&](const char* name, double value) {
+        text.page.set(name, shaderNumber(value));
+    };
+    const HalfwayAxes::Constants& axes = table.axes().constants();
+    const auto half = static_cast<double>(table.size().half),
+               plane = static_cast<double>(table.size().plane),
+               horizon = static_cast<double>(table.size().horizon), rows = plane * horizon;
+    number("leastSquare", TablePlace::leastSquare);
+    number("leastSine2", TablePlace::leastSine2);
+    number("halfStraight", 1 - TablePlace::halfBend);
+    number("halfBend", TablePlace::halfBend);
+    number("planeStraight", 1 - TablePlace::planeBend);
+    number("planeBend", TablePlace::planeBend);
+    number("perLog", axes.perLog);
+    number("stretch", axes.xx * axes.xx);
+    number("lastHorizon", horizon - 1);
+    number("lastCell", horizon - 2);
+    number("halfScale", (half - 1) / half);
+    number("halfFirst", 0.5 / half);
+    number("planeScale", (plane - 1) / rows);
+    number("planeFirst", 0.5 / rows);
+    number("nodeScale", plane / rows);
+    text.page.set("table", true);
+    text.cost.products += 24 + 16 * table.groups();
+    text.cost.fetches = 1 + 5 * table.groups();
+}
+
+void fillMaterials(const SharedSums& sums, FormText& text) {
+    if (sums.table)
+        fillTable(*sums.table, text);
+    else
+        fillConstants(sums, text);
+    text.page.set("function", "material");
+    text.page.set("materials", true);
+    text.page.set("place", fmt::format("i, (m) & {}", mostRows - 1));
+    text.page.set("layer", fmt::format("(m) >> {}", rowBits));
+    const double unit = text.constants ? std::numbers::log2e : 1;
+    text.page.set("expOf", text.constants ? "exp2" : "exp");
+    text.page.set("topScale", shaderNumber(sums.topStep * unit));
+    text.page.set("topFirst", shaderNumber(sums.topFirst * unit));
+    text.page.set("offset", shaderNumber(sums.offset));
+    text.page.set("kind", fmt::format("library: {} materials over {} functions{}", sums.count(),
+                                      sums.functions.head.channels.count() - 1,
+                                      sums.table ? " in a table" : ""));
+    text.page.set("orders", false);
+    text.page.set("numbers", std::to_string(sums.materials.size()));
+    text.page.set("bytes", std::to_string(text.payload.texels.bytes.size()));
+    text.page.set("channelNames", "R G B");
+    text.page.set("formula", "f = max(exp(min(Phi_0 + sum_k q_k Phi_k, top)) - offset, 0)");
+}
+
 }  // namespace
 
-SharedSums foldedSums(const SharedSums& sums) {
-    SharedSums folded = sums;
-    folded.parts.clear();
-    folded.materials.clear();
+SharedSums tabledSums(const SharedSums& sums, const TableSize& size) {
+    SharedSums tabled = sums;
+    tabled.table = std::make_shared<const FunctionTable>(sums.functions, size);
+    std::vector<double> texels(4 * tabled.stride() * sums.count(), 0.0);
     for (std::size_t m = 0; m < sums.count(); ++m) {
-        std::vector<double> own = ownSums(sums, m);
-        const Representation colours = inColours(sums.functions, own);
-        if (m == 0) {
-            folded.functions = colours;
-            folded.folded = (halfwayStream(colours).size() + 3) / 4;
+        const double* const from = &sums.materials[4 * sums.stride() * m];
+        double* const to = &texels[4 * tabled.stride() * m];
+        std::size_t last = 0;
+        for (std::size_t c = 0; c < 3; ++c) {
+            double* const numbers = to + 4 * (1 + c);
+            const auto at = [&](std::size_t k) -> double& { return numbers[k / 4 * 12 + k % 4]; };
+            to[c] = from[4 * sums.parts.size() + c];
+            at(0) = 1;
+            for (std::size_t p = 0; p < sums.parts.size(); ++p) {
+                const std::size_t k = sums.parts[p].function;
+                at(k) += sums.parts[p].scale * from[4 * p + c];
+                if (at(k) != 0) last = std::max(last, k);
+            }
         }
-        const std::size_t first = folded.materials.size();
-        for (const StreamNumber& number : halfwayStream(colours))
-            folded.materials.push_back(own[number.value]);
-        folded.materials.resize(first + 4 * folded.folded, 0.0);
-        const auto top =
-            sums.materials.begin() + static_cast<std::ptrdiff_t>(4 * (sums.stride() * (m + 1) - 1));
-        folded.materials.insert(folded.materials.end(), top, top + 4);
+        to[3] = static_cast<double>(last / 4 + 1);
     }
-    return folded;
+    tabled.materials = decode(rowsOf(texels, tabled.stride()));
+    tabled.materials.resize(texels.size());
+    return tabled;
 }
 
 Texels materialTexels(const SharedSums& sums) {
-    const std::size_t texels = sums.materials.size() / 4, width = formWidth;
-    const std::size_t height = std::max<std::size_t>(1, (texels + width - 1) / width);
-    std::vector<double> values = sums.materials;
-    values.resize(4 * width * height, 0.0);
-    return encode(values, formWidth, static_cast<int>(height), 1, Number::float16);
+    return rowsOf(sums.materials, sums.stride());
 }
 
 std::string libraryShaderSource(Language language, const SharedSums& sums,
@@ -128,9 +145,9 @@ std::string libraryShaderSource(Language language, const SharedSums& sums,
                         .stream = halfwayStream(sums.functions),
                         .texels = materialTexels(sums)};
     return formText(language, payload, prefix,
-                    {.body = embedded::form_library,
+                    {.body = sums.table ? embedded::form_library_table : embedded::form_library,
                      .storage = Storage::texture,
-                     .constants = sums.folded == 0,
+                     .constants = !sums.table,
                      .channels = Channels::rgb(),
                      .fill = [&](FormText& text) { fillMaterials(sums, text); }});
 }

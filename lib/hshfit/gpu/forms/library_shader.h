@@ -1,9 +1,11 @@
 #pragma once
 
 #include <hshfit/gpu/forms/form_payload.h>
+#include <hshfit/gpu/forms/function_table.h>
 #include <hshfit/gpu/shader.h>
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -23,28 +25,31 @@ struct SharedSums {
         double scale = 1;
     };
     std::vector<Part> parts;  ///< of a material; one more texel has t
-    /// Texels that have, in place of parts, the coefficients of a material's own sum
-    /// Phi_0 + sum_k q_k Phi_k, in the order of halfwayStream; 0: parts.
-    std::size_t folded = 0;
-    /// The texels of the first material, of the second, …; the fourth lanes are 0.
+    /// The functions as a table. A material then has a texel with t and the number n of texels of
+    /// the table that it needs, and three for each: the q_k of four functions for R, for G and for
+    /// B, q_0 being 1. Beyond n all are 0.
+    std::shared_ptr<const FunctionTable> table = {};
+    /// The texels of the first material, of the second, …; without a table the fourth lanes are 0.
     std::vector<double> materials;
 
-    std::size_t stride() const { return parts.size() + folded + 1; }  ///< texels of a material
+    std::size_t stride() const {  ///< texels of a material
+        return 1 + (table ? 3 * table->groups() : parts.size());
+    }
     std::size_t count() const { return materials.size() / (4 * stride()); }
 };
 
-/// The same materials with a sum each: a pair costs one sum for three channels instead of one for
-/// every function, and a material takes as many numbers as that sum has.
-SharedSums foldedSums(const SharedSums& sums);
+/// The same with a table; q_k of more than 2048 are rounded to halves.
+SharedSums tabledSums(const SharedSums& sums, const TableSize& size);
 
-/// The texels of all materials in float16, one after another in rows of `formWidth`.
+/// The texels of all materials in float16: a row for each material, 2048 of them a layer.
 Texels materialTexels(const SharedSums& sums);
 
 /// A snippet with one function for all materials:
 ///     PREFIX_material(material, wo, wi)     f(wo, wi) in 1/sr, linear Rec. 709
-/// `material` counts from 0. The functions stand in the text; the texels of the materials are read
-/// as those of a form in a texture (form_shader.h), stride() of them. Throws UsageError for OSL,
-/// whose textures take no whole numbers as places.
+/// `material` counts from 0. The functions stand in the text, or are looked up in the table, a
+/// second texture with a filter; the texels of the materials are read as those of a form in a
+/// texture (form_shader.h). Throws UsageError for OSL, whose textures take no whole numbers as
+/// places.
 std::string libraryShaderSource(Language language, const SharedSums& sums,
                                 const std::string& prefix);
 
