@@ -46,18 +46,20 @@ TEST_F(Studies, EvalWritesTheTableOfTheProgram) {
           "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,name\n0,0,1,0.6,0,0.8,a\n0.6,0,0.8,0,0.6,.8,b\n");
     const std::string spec = "ward:kd=.1/.2/.3,ks=.2,ax=.2,ay=.5";
     const jobs::EvaluatedPairs all =
-        jobs::evaluatePairs(spec, path("pairs.csv"), path("job.csv"), {.cosine = true});
+        jobs::evaluatePairs(spec, path("job.csv"), {.cosine = true, .pairs = path("pairs.csv")});
     const std::string& csv = all.csv;
     EXPECT_EQ(all.count, 2u);
     EXPECT_EQ(all.facts.values.size(), 6u);
     EXPECT_EQ(csv, runProgram("eval " + spec + " --cosine --pairs " + path("pairs.csv")));
     EXPECT_EQ(read(path("job.csv")), csv);
-    const jobs::Evaluated one =
-        jobs::evaluatePair(spec, directionFromAngles(0, 0), directionFromAngles(0.3, 0.2), {});
+    const jobs::EvalOptions pair{.wi = jobs::Angles{0, 0}, .wo = jobs::Angles{20, 10}};
+    const jobs::Evaluated one = jobs::evaluatePair(spec, pair);
     EXPECT_EQ(one.channels, (std::vector<std::string>{"R", "G", "B"}));
     EXPECT_EQ(one.values.size(), 3u);
+    EXPECT_THROW(jobs::evaluatePair(spec, {.wi = jobs::Angles{0, 0}}), UsageError);
+    EXPECT_THROW(jobs::evaluatePair(spec, {.wi = pair.wi, .wo = jobs::Angles{100, 0}}), UsageError);
     write("angles.csv", "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,0,1,45,0,0\n");
-    EXPECT_THROW(jobs::evaluatePairs(spec, path("angles.csv"), "", {}), InputError);
+    EXPECT_THROW(jobs::evaluatePairs(spec, "", {.pairs = path("angles.csv")}), InputError);
 }
 
 TEST_F(Studies, InfoHasTheFactsOfTheProgram) {
