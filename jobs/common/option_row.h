@@ -82,9 +82,9 @@ struct OptionRow {
 private:
     template <class Value>
     constexpr OptionRow having(Value OptionRow::*member,
-                               const std::type_identity_t<Value>& value) const {
+                               const std::type_identity_t<Value>& said) const {
         OptionRow row = *this;
-        row.*member = value;
+        row.*member = said;
         return row;
     }
 
