@@ -227,6 +227,15 @@ TEST_F(LibraryFile, ReadingGivesWhatWasWritten) {
     EXPECT_EQ(library.materials.size(), 7u);
 }
 
+TEST_F(LibraryFile, TheRestBeyondTheTermsIsKeptAndMayBeAbsent) {
+    Library library = parsed(file());
+    EXPECT_EQ(library.measured.front().rest, family(6, 6).front().rest);
+    ASSERT_FALSE(library.measured.front().rest.empty());
+    for (Measured& one : library.measured) one.rest.clear();
+    const test::TemporaryFile again("");
+    EXPECT_TRUE(parsed(bytesOf(library, again.path())).measured.front().rest.empty());
+}
+
 TEST_F(LibraryFile, CutFilesAreRefused) {
     const std::string whole = file();
     for (std::size_t n = 0; n < whole.size(); n += 1 + n / 40)
