@@ -2,14 +2,13 @@
 """library_errors.py PROGRAM TABLES OUT [--divisions N] [--halfway MATERIALS] [--few]
 
 The table of docs/explanation/library_of_materials.md: the errors of materials that took no part
-in a library,
-over random divisions of the tables of a folder (MERL layout), beside halfway forms. A library is
-learned of each table alone, once; those of a division are merged. Prints medians and the share of
-new materials at 120 bytes within the error of halfway 8,4,3, by each measure; OUT/errors.json has
+in a library, over random divisions of the tables or planes of a folder (MERL layout), beside
+halfway forms. A library is learned of each table alone, once; those of a division are merged.
+Prints medians and the share of new materials at 120 bytes within the error of halfway 8,4,3, by each measure; OUT/errors.json has
 every number, so that a second run goes on. --few: instead, materials from 5, 10 and 20 directions
 with errors of 2 %, chosen by `library next`, at random, and chosen in the plane of incidence,
-beside fits to the same samples with each loss,
-and the share of the truth within bands of one deviation.
+beside fits to the same samples with each loss, and the share of the truth within bands of one
+deviation.
 """
 import argparse
 import json
@@ -74,11 +73,10 @@ class Errors:
                           header="wi_x,wi_y,wi_z,wo_x,wo_y,wo_z")
         return path
 
-    def measured(self, table, spec, size):
+    def measured(self, table, spec, size, picture):
         """The errors of a specification against a table, with the same pairs for every form."""
         f, g = (numpy.maximum(v, 0) for v in (self.values(table, table.stem), self.values(spec)))
         c = numpy.loadtxt(self.pairs(), delimiter=",", skiprows=1, usecols=2)[:, None]
-        picture = self.call("compare", table, spec, "--metrics", "nbrdf")["picture"]
         return {"mean_log": float(abs(numpy.log1p(f * c) - numpy.log1p(g * c)).mean()),
                 "log": float(abs(numpy.log((g + 1e-3) / (f + 1e-3))).mean()),
                 "relative_l2": float((((g - f) * c) ** 2).sum() / ((f * c) ** 2).sum()) ** 0.5,
@@ -104,13 +102,13 @@ class Errors:
     def encoded(self, library, table):
         where = self.out / "one.library"
         answer = self.call("library", "encode", library, table, "-o", where, "--force", *FREE)
-        return self.measured(table, where, answer["bytes"])
+        return self.measured(table, where, answer["bytes"], answer["picture"])
 
     def halfway(self, table, orders):
         form = self.out / "form.json"
         answer = self.call("project", table, "--form", "halfway", "--halfway", orders,
                            "--precision", "half", "--reciprocal", "-o", form, "--force")
-        return self.measured(table, form, answer["representation"]["bytes"])
+        return self.measured(table, form, answer["representation"]["bytes"], answer["picture"])
 
 
 def medians(rows):
@@ -227,7 +225,8 @@ def main():
     parser.add_argument("--few", action="store_true", help="materials from few directions")
     arguments = parser.parse_args()
     errors = Errors(arguments)
-    tables = sorted(pathlib.Path(arguments.tables).glob("*.binary"))
+    tables = sorted(p for p in pathlib.Path(arguments.tables).iterdir()
+                    if p.suffix in (".binary", ".slice"))
     if arguments.few:
         return few(errors, tables, arguments)
     print("| form | bytes | mean log | log (1e-3) | relative L2 | maximum | FLIP |")

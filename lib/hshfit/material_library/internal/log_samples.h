@@ -2,6 +2,7 @@
 
 #include <hshfit/accuracy/pair_sample.h>
 #include <hshfit/linear_algebra/decompositions.h>
+#include <hshfit/material_library/internal/seen_pairs.h>
 
 #include <cstddef>
 
@@ -28,6 +29,7 @@ struct LogSamples {
     linear_algebra::RowMajor terms;  ///< X: [pair][term]
     Eigen::MatrixXd metric;          ///< A
     Eigen::MatrixXd lower;           ///< L
+    SeenPairs seen;
 
     /// A^-1 b, column by column.
     Eigen::MatrixXd solve(Eigen::MatrixXd right) const;
