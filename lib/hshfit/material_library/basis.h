@@ -46,8 +46,9 @@ LogMaterial decode(const Basis& basis, std::span<const std::uint8_t> codes);
 inline constexpr double topsPerLog = 12;
 
 /// The codes of materials in a basis: the least of
-///     |d|^2 + 4 sum over lit pixels of w d^2,   d the error of ln(f + logOffset),
-/// the first in the metric of `space`, w as pictures of the material see it (SeenPairs). Coordinates
+///     |d|^2 + 4 sum of w d^2 + sum of u d^2,   d the error of ln(f + logOffset),
+/// the first in the metric of `space`, w over lit pixels as pictures of the material see it
+/// (SeenPairs), u over pairs as (f cos)^2, with a sum of 1: relative L2 to first order. Coordinates
 /// are rounded one after another, the last first, each to the nearest step of the best that is left
 /// to it (Babai 1986). `space` has to outlive this.
 class Encoder {
