@@ -4,11 +4,11 @@
 The table of docs/explanation/library_of_materials.md: the errors of materials that took no part
 in a library, over random divisions of the tables or planes of a folder (MERL layout), beside
 halfway forms. A library is learned of each table alone, once; those of a division are merged.
-Prints medians and the share of new materials at 120 bytes within the error of halfway 8,4,3, by each measure; OUT/errors.json has
-every number, so that a second run goes on. --few: instead, materials from 5, 10 and 20 directions
-with errors of 2 %, chosen by `library next`, at random, and chosen in the plane of incidence,
-beside fits to the same samples with each loss, and the share of the truth within bands of one
-deviation.
+Prints medians and the share of new materials at 120 bytes within the error of halfway 8,4,3, by
+each measure; OUT/errors.json has every number, so that a second run goes on. --few: instead,
+materials from 5, 10 and 20 directions with errors of 2 %, chosen by `library next`, at random, and
+chosen in the plane of incidence, beside fits to the same samples with each loss, and the share of
+the truth within bands of one deviation.
 """
 import argparse
 import json
