@@ -239,7 +239,7 @@ void runReconstruct(const LibraryArguments& arguments, const Globals& globals) {
     if (!agreement.known)
         note(globals, fmt::format("{}: the library does not know such a material: chi-square is "
                                   "{:.3g} for each sample, of its own materials {:.3g} at most of "
-                                  "19 in 20",
+                                  "39 in 40",
                                   arguments.inputs[0], each, agreement.usual));
     if (globals.json) {
         Json document = headOf(arguments);

@@ -2,13 +2,13 @@
 """library_errors.py PROGRAM TABLES OUT [--divisions N] [--halfway MATERIALS] [--few]
 
 The table of docs/explanation/library_of_materials.md: the errors of materials that took no part
-in a library,
-over random divisions of the tables of a folder (MERL layout), beside halfway forms. A library is
-learned of each table alone, once; those of a division are merged. Prints medians and the share of
-new materials at 120 bytes within the error of halfway 8,4,3, by each measure; OUT/errors.json has
-every number, so that a second run goes on. --few: instead, materials from 5, 10 and 20 directions
-with errors of 2 %, chosen by `library next`, at random, and chosen in the plane of incidence,
-beside a fit to the same samples, and the share of the truth within bands of one deviation.
+in a library, over random divisions of the tables or planes of a folder (MERL layout), beside
+halfway forms. A library is learned of each table alone, once; those of a division are merged.
+Prints medians and the share of new materials at 120 bytes within the error of halfway 8,4,3, by
+each measure; OUT/errors.json has every number, so that a second run goes on. --few: instead,
+materials from 5, 10 and 20 directions with errors of 2 %, chosen by `library next`, at random, and
+chosen in the plane of incidence, beside fits to the same samples with each loss, and the share of
+the truth within bands of one deviation.
 """
 import argparse
 import json
@@ -73,11 +73,10 @@ class Errors:
                           header="wi_x,wi_y,wi_z,wo_x,wo_y,wo_z")
         return path
 
-    def measured(self, table, spec, size):
+    def measured(self, table, spec, size, picture):
         """The errors of a specification against a table, with the same pairs for every form."""
         f, g = (numpy.maximum(v, 0) for v in (self.values(table, table.stem), self.values(spec)))
         c = numpy.loadtxt(self.pairs(), delimiter=",", skiprows=1, usecols=2)[:, None]
-        picture = self.call("compare", table, spec, "--metrics", "nbrdf")["picture"]
         return {"mean_log": float(abs(numpy.log1p(f * c) - numpy.log1p(g * c)).mean()),
                 "log": float(abs(numpy.log((g + 1e-3) / (f + 1e-3))).mean()),
                 "relative_l2": float((((g - f) * c) ** 2).sum() / ((f * c) ** 2).sum()) ** 0.5,
@@ -103,13 +102,13 @@ class Errors:
     def encoded(self, library, table):
         where = self.out / "one.library"
         answer = self.call("library", "encode", library, table, "-o", where, "--force", *FREE)
-        return self.measured(table, where, answer["bytes"])
+        return self.measured(table, where, answer["bytes"], answer["picture"])
 
     def halfway(self, table, orders):
         form = self.out / "form.json"
         answer = self.call("project", table, "--form", "halfway", "--halfway", orders,
                            "--precision", "half", "--reciprocal", "-o", form, "--force")
-        return self.measured(table, form, answer["representation"]["bytes"])
+        return self.measured(table, form, answer["representation"]["bytes"], answer["picture"])
 
 
 def medians(rows):
@@ -122,7 +121,7 @@ def line(name, row):
 
 
 KINDS = ("chosen", "random", "in-plane")
-MODELS = ("lambert+ggx",)
+LOSSES = ("log", "log-relative", "cube-root", "cosine", "l2")  # of a fit of lambert+ggx
 
 
 def directions(errors, library, kind, count):
@@ -179,35 +178,39 @@ def one_scan(errors, library, table, pairs, seed):
     answer = errors.call("library", "reconstruct", samples, "--library", library, "-o", form,
                          "--bands", errors.pairs(), "--bands-to", bands, "--force")
     f = errors.values(table, table.stem)
-    row = {"library": pointwise(errors, f, form), "covered": covered(bands, f),
-           "known": answer["known"]}
-    for model in MODELS:
-        fit = errors.out / "fit.json"
-        run = subprocess.run([errors.program, "fit", samples, "--model", model, "--loss", "log",
-                              "-o", fit, "--force", "--quiet"], capture_output=True, check=False)
-        row[model] = pointwise(errors, f, fit) if run.returncode == 0 else None
-    return row
+    return {"library": pointwise(errors, f, form), "covered": covered(bands, f),
+            "known": answer["known"]}
+
+
+def one_fit(errors, table, pairs, seed, loss):
+    """The mean log error of a fit to the same samples; None where there is no fit."""
+    samples, fit = scan(errors, table, pairs, seed), errors.out / "fit.json"
+    run = subprocess.run([errors.program, "fit", samples, "--model", "lambert+ggx", "--loss", loss,
+                          "-o", fit, "--force", "--quiet"], capture_output=True, check=False)
+    return pointwise(errors, errors.values(table, table.stem), fit) if not run.returncode else None
 
 
 def few(errors, tables, arguments):
-    print("| directions | library, mean log | bands | unknown | " + " | ".join(MODELS) + " |")
-    print("|---|---|---|---|" + "---|" * len(MODELS))
+    print("| directions | library, mean log | bands | unknown | " + " | ".join(LOSSES) + " |")
+    print("|---|---|---|---|" + "---|" * len(LOSSES))
     for kind in KINDS:
         for count in (5, 10, 20):
-            rows = []
+            rows, fits = [], {loss: [] for loss in LOSSES}
             for division in range(arguments.divisions):
                 library, new = errors.division(tables, division, arguments.new, 120)
                 pairs = directions(errors, library, kind, count)
-                rows += [errors.once(f"few {kind} {count} {division} {t.stem}",
-                                     lambda t=t, l=library, p=pairs, s=k:
-                                     one_scan(errors, l, t, p, s))
-                         for k, t in enumerate(new)]
-            fits = (statistics.median([r[m] for r in rows if r[m] is not None] or [float("nan")])
-                    for m in MODELS)
+                for seed, table in enumerate(new):
+                    name = f"{kind} {count} {division} {table.stem}"
+                    rows.append(errors.once(f"few {name}", lambda t=table, s=seed:
+                                            one_scan(errors, library, t, pairs, s)))
+                    for loss in LOSSES:
+                        fits[loss].append(errors.once(f"fit {loss} {name}", lambda t=table, s=seed:
+                                                      one_fit(errors, t, pairs, s, loss)))
             print(f"| {count} {kind} | {statistics.median(r['library'] for r in rows):.2g} | "
                   f"{statistics.mean(r['covered'] for r in rows):.2f} | "
                   f"{sum(not r['known'] for r in rows)} of {len(rows)} | " +
-                  " | ".join(f"{v:.2g}" for v in fits) + " |", flush=True)
+                  " | ".join(f"{statistics.median([v for v in fits[loss] if v] or [0]):.2g}"
+                             for loss in LOSSES) + " |", flush=True)
 
 
 def main():
@@ -222,7 +225,8 @@ def main():
     parser.add_argument("--few", action="store_true", help="materials from few directions")
     arguments = parser.parse_args()
     errors = Errors(arguments)
-    tables = sorted(pathlib.Path(arguments.tables).glob("*.binary"))
+    tables = sorted(p for p in pathlib.Path(arguments.tables).iterdir()
+                    if p.suffix in (".binary", ".slice"))
     if arguments.few:
         return few(errors, tables, arguments)
     print("| form | bytes | mean log | log (1e-3) | relative L2 | maximum | FLIP |")

@@ -110,12 +110,13 @@ ReconstructedMaterial reconstructMaterial(const std::string& samples, const std:
     if (gathered.all > gathered.observations.size())
         listener.say(
             fmt::format("{} of {} samples are used", gathered.observations.size(), gathered.all));
-    ml::Posterior posterior(library);
+    const ml::LogSpace space;
+    ml::Posterior posterior(space, library);
     done.samples = gathered.observations.size();
     done.agreement = posterior.observe(gathered.observations);
     done.expectedError = posterior.expectedError();
     done.material = posterior.material();
-    for (const DirectionPair& pair : done.pairs) done.bands.push_back(posterior.at(pair));
+    done.bands = posterior.bands(done.pairs);
     ml::Material material{.name = done.name,
                           .source = samples,
                           .kind = ml::Kind::polynomial,
@@ -148,7 +149,8 @@ std::vector<ml::NextPair> nextPairs(const std::string& samples, const std::strin
             fmt::format("{} '{}': the next samples have no file yet; give a share or "
                         "a number, such as 2%",
                         Setting{"FitOptions::sigma"}, options.sigma));
-    ml::Posterior posterior(library);
+    const ml::LogSpace space;
+    ml::Posterior posterior(space, library);
     if (!samples.empty()) {
         const auto data = openBrdf(samples);
         posterior.observe(

@@ -11,6 +11,8 @@ namespace hshfit::material_library {
 namespace {
 
 constexpr int mostTop = 255;
+/// Of lit pixels beside all pairs: with the peaks, of 0.5 to 8 the least FLIP without a loss.
+constexpr double pictureWeight = 4;
 
 int halfRange(std::uint8_t width) {
     return 1 << (width - 1);
@@ -30,6 +32,53 @@ using Matrix = Eigen::Map<const linear_algebra::RowMajor>;
 Matrix matrixOf(const Basis& basis) {
     return {basis.components.data(), static_cast<Eigen::Index>(basis.size()),
             static_cast<Eigen::Index>(basis.mean.size())};
+}
+
+constexpr Eigen::Index peakStep = 8;
+
+/// The terms at every few pairs of the samples.
+Eigen::Map<const linear_algebra::RowMajor, 0, Eigen::OuterStride<>> everyFew(
+    const LogSamples& samples) {
+    const Eigen::Index terms = samples.terms.cols();
+    return {samples.terms.data(), samples.terms.rows() / peakStep, terms,
+            Eigen::OuterStride<>(peakStep * terms)};
+}
+
+/// Weights there by (f c)^2, c = cos(theta_i) and f by the sums of the material, that add up to 1:
+/// [pair][channel].
+Eigen::MatrixXd peakWeights(const LogSamples& samples, const LogMaterial& material) {
+    const auto channels = static_cast<Eigen::Index>(material.channels());
+    Eigen::MatrixXd peaks =
+        everyFew(samples) * Eigen::Map<const Eigen::MatrixXd>(material.exponents.data(),
+                                                              samples.terms.cols(), channels);
+    for (Eigen::Index c = 0; c < channels; ++c) {
+        const double top = material.tops[static_cast<std::size_t>(c)];
+        for (Eigen::Index n = 0; n < peaks.rows(); ++n) {
+            const auto k = static_cast<std::size_t>(n * peakStep);
+            const double f = std::max(std::exp(std::min(peaks(n, c), top)) - logOffset, 0.0);
+            peaks(n, c) = samples.pairs.weights[k] * std::pow(f * samples.pairs.z[k], 2);
+        }
+        peaks.col(c) /= std::max(peaks.col(c).sum(), 1e-300);
+    }
+    return peaks;
+}
+
+/// Coordinates a in whole steps with a small a^T gram a - 2 a^T right; the others are 0.
+std::vector<double> rounded(const Basis& basis, const Eigen::MatrixXd& gram,
+                            const Eigen::VectorXd& right) {
+    std::vector<double> all(basis.size(), 0.0);
+    const Eigen::LLT<Eigen::MatrixXd> factor(gram);
+    const Eigen::VectorXd best = factor.solve(right);
+    const Eigen::MatrixXd upper = factor.matrixU();
+    Eigen::VectorXd off = Eigen::VectorXd::Zero(best.size());  // best - rounded
+    for (Eigen::Index k = best.size() - 1; k >= 0; --k) {
+        const double most = basis.step * (halfRange(basis.widths[static_cast<std::size_t>(k)]) - 1);
+        const double free = best[k] + upper.row(k).dot(off) / upper(k, k);
+        const double value = std::clamp(basis.step * std::round(free / basis.step), -most, most);
+        all[static_cast<std::size_t>(k)] = value;
+        off[k] = best[k] - value;
+    }
+    return all;
 }
 
 }  // namespace
@@ -88,43 +137,47 @@ LogMaterial decode(const Basis& basis, std::span<const std::uint8_t> codes) {
     return material;
 }
 
-struct Encoder::Projection {
-    Eigen::MatrixXd rows;  ///< coordinates = rows (exponents - mean)
+struct Encoder::Metric {
+    Eigen::MatrixXd measured;  ///< components times the metric of all pairs
+    Eigen::MatrixXd gram;      ///< that times components
+    Eigen::MatrixXd seen;      ///< components at the pairs of pictures, [component][pair]
+    Eigen::MatrixXd peaks;     ///< and at every `peakStep`th pair of the samples
 };
 
-Encoder::Encoder(const Basis& basis, const LogSpace& space) : basis_(basis) {
-    projection_ = std::make_unique<const Projection>();
-    if (basis.size() == 0) return;
+Encoder::Encoder(const Basis& basis, const LogSpace& space) : basis_(basis), space_(space) {
     const Eigen::MatrixXd measured = matrixOf(basis) * space.samples().metric;
-    const Eigen::MatrixXd gram = measured * matrixOf(basis).transpose();
-    projection_ = std::make_unique<const Projection>(Projection{gram.ldlt().solve(measured)});
+    metric_ = std::make_unique<const Metric>(
+        Metric{measured, measured * matrixOf(basis).transpose(),
+               matrixOf(basis) * space.samples().seen.terms.transpose(),
+               matrixOf(basis) * everyFew(space.samples()).transpose()});
 }
 
 Encoder::~Encoder() = default;
 
-std::vector<double> Encoder::coordinates(const LogMaterial& material,
-                                         std::size_t components) const {
-    const auto terms = static_cast<Eigen::Index>(basis_.mean.size());
-    const Eigen::Map<const Eigen::VectorXd> mean(basis_.mean.data(), terms);
-    std::vector<double> all;
-    for (std::size_t c = 0; c < material.channels(); ++c) {
-        const Eigen::Map<const Eigen::VectorXd> exponents(
-            material.exponents.data() + c * basis_.mean.size(), terms);
-        if (basis_.size() == 0) continue;
-        const Eigen::VectorXd a = projection_->rows * (exponents - mean);
-        for (std::size_t k = 0; k < basis_.size(); ++k)
-            all.push_back(k < components ? a[static_cast<Eigen::Index>(k)] : 0);
-    }
-    return all;
-}
-
 std::vector<std::uint8_t> Encoder::encode(const LogMaterial& material,
                                           std::size_t components) const {
-    const std::vector<double> all = coordinates(material, components);
+    const auto terms = static_cast<Eigen::Index>(basis_.mean.size());
+    const auto used = static_cast<Eigen::Index>(std::min(components, basis_.size()));
+    const Eigen::Map<const Eigen::VectorXd> mean(basis_.mean.data(), terms);
+    const LogSamples& samples = space_.samples();
+    const Eigen::MatrixXd pictures = pictureWeight * samples.seen.weights(material),
+                          peaks = peakWeights(samples, material),
+                          seen = metric_->seen.topRows(used), few = metric_->peaks.topRows(used);
     std::vector<std::uint8_t> codes;
     for (std::size_t c = 0; c < material.channels(); ++c) {
-        const std::vector<std::uint8_t> one = pack(
-            basis_, std::span(all).subspan(c * basis_.size(), basis_.size()), material.tops[c]);
+        const auto column = static_cast<Eigen::Index>(c);
+        const Eigen::VectorXd off = Eigen::Map<const Eigen::VectorXd>(
+                                        material.exponents.data() + c * basis_.mean.size(), terms) -
+                                    mean;
+        const Eigen::MatrixXd inPictures = seen * pictures.col(column).asDiagonal(),
+                              atPeaks = few * peaks.col(column).asDiagonal();
+        const Eigen::MatrixXd gram = metric_->gram.topLeftCorner(used, used) +
+                                     inPictures * seen.transpose() + atPeaks * few.transpose();
+        const Eigen::VectorXd right = metric_->measured.topRows(used) * off +
+                                      inPictures * (samples.seen.terms * off) +
+                                      atPeaks * (everyFew(samples) * off);
+        const std::vector<std::uint8_t> one =
+            pack(basis_, rounded(basis_, gram, right), material.tops[c]);
         codes.insert(codes.end(), one.begin(), one.end());
     }
     return codes;

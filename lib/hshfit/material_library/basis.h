@@ -45,22 +45,25 @@ LogMaterial decode(const Basis& basis, std::span<const std::uint8_t> codes);
 /// The bound of a channel whose code begins with `code`: ln(logOffset) + code / topsPerLog.
 inline constexpr double topsPerLog = 12;
 
-/// The numbers of materials in a basis: least squares in the metric of `space`, which has to
-/// outlive this.
+/// The codes of materials in a basis: the least of
+///     |d|^2 + 4 sum of w d^2 + sum of u d^2,   d the error of ln(f + logOffset),
+/// the first in the metric of `space`, w over lit pixels as pictures of the material see it
+/// (SeenPairs), u over pairs as (f cos)^2, with a sum of 1: relative L2 to first order. Coordinates
+/// are rounded one after another, the last first, each to the nearest step of the best that is left
+/// to it (Babai 1986). `space` has to outlive this.
 class Encoder {
 public:
     Encoder(const Basis& basis, const LogSpace& space);
     ~Encoder();
 
-    /// The coordinates of channel after channel, not rounded; those from `components` on are 0.
-    std::vector<double> coordinates(const LogMaterial& material, std::size_t components) const;
-    /// Codes of all channels.
+    /// The codes of all channels; coordinates from `components` on are 0.
     std::vector<std::uint8_t> encode(const LogMaterial& material, std::size_t components) const;
 
 private:
-    struct Projection;
+    struct Metric;
     const Basis& basis_;
-    std::unique_ptr<const Projection> projection_;
+    const LogSpace& space_;
+    std::unique_ptr<const Metric> metric_;
 };
 
 /// Root of the weighted mean square of the difference of ln(f + logOffset), over channels.

@@ -22,13 +22,14 @@ struct Observation {
 struct Agreement {
     double chiSquare = 0;
     std::size_t degreesOfFreedom = 0;
-    /// The 95th percentile of chiSquare / degreesOfFreedom that is expected of the library's own
-    /// materials at the same pairs, with the noise of the samples.
+    /// The 97.5th percentile of chiSquare / degreesOfFreedom of the library's own materials at the
+    /// same pairs, with the noise of the samples, each by a prior that it takes no part in; of up
+    /// to 40 the largest.
     double usual = 0;
-    bool known = true;  ///< at most twice as much, or 2
+    bool known = true;  ///< at most as much
 };
 
-/// f and the bounds of one standard deviation of ln(f + logOffset), 1/sr, [channel].
+/// f and bounds about it, 1/sr, [channel].
 struct Band {
     std::vector<double> value, low, high;
 };
@@ -48,15 +49,15 @@ struct NextOptions {
     double mostTheta = 80;  ///< degrees
 };
 
-/// Coordinates of a material in a basis, normal a priori as those of the materials of the library
-/// are, and conditioned on observations of ln(f + logOffset) to first order in their uncertainties.
-/// The sum of the channels and their differences count as independent; covariances are shrunk
-/// towards their diagonal by K / (K + M), K coordinates and M materials. The part of a material
-/// beyond the basis is noise at every pair.
+/// A material as a sum of logTerms(), normal a priori as the materials of the library are
+/// (material_prior.h), and conditioned on observations of ln(f + logOffset) to first order in their
+/// uncertainties. The rest beyond the terms is noise at every pair, by zones of pairs.
+/// Bands are standard deviations times a factor that makes them hold 68.3 % of the library's own
+/// materials, each from a prior that it takes no part in, after observations at the same pairs.
 class Posterior {
 public:
-    /// `library` has to outlive this. Throws InputError for fewer than three coded materials.
-    explicit Posterior(const Library& library);
+    /// `space` has to outlive this. Throws InputError for fewer than three materials in terms.
+    Posterior(const LogSpace& space, const Library& library);
     ~Posterior();
 
     /// The maximum a posteriori given all of these, which is also the mean; from the prior anew.
@@ -64,7 +65,7 @@ public:
     Agreement observe(std::span<const Observation> observations);
 
     LogMaterial material() const;
-    Band at(const DirectionPair& pair) const;
+    std::vector<Band> bands(std::span<const DirectionPair> pairs) const;
     /// Root mean square error of ln(f + logOffset), over pairs and channels.
     double expectedError() const;
 

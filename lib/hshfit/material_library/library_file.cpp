@@ -5,6 +5,7 @@
 #include <hshfit/files/mapped_file.h>
 #include <hshfit/files/tensor_file.h>
 #include <hshfit/files/tensor_file_writer.h>
+#include <hshfit/material_library/internal/log_samples.h>
 #include <hshfit/material_library/log_terms.h>
 #include <hshfit/version.h>
 #include <hshfit/wording.h>
@@ -99,7 +100,7 @@ std::vector<std::uint16_t> asHalves(const std::vector<double>& values) {
 struct Joined {
     std::string codes, halfway;
     std::vector<double> polynomials, polynomialTops;
-    std::vector<float> exponents, tops;
+    std::vector<float> exponents, tops, rests;
 };
 
 Joined joinedOf(const Library& library) {
@@ -116,7 +117,10 @@ Joined joinedOf(const Library& library) {
     for (const Measured& m : library.measured) {
         all.exponents.insert(all.exponents.end(), m.exponents.begin(), m.exponents.end());
         all.tops.insert(all.tops.end(), m.tops.begin(), m.tops.end());
+        all.rests.insert(all.rests.end(), m.rest.begin(), m.rest.end());
     }
+    // Of files that did not say it the rest is not known.
+    if (all.rests.size() != library.measured.size() * restRows) all.rests.clear();
     return all;
 }
 
@@ -182,8 +186,10 @@ public:
     }
     void requireTops(const std::vector<float>& tops, const char* key) const {
         for (const float top : tops)
-            if (top > highestTop)
-                file_.fail(file_.field(key), fmt::format("has {}, more than {}", top, highestTop));
+            if (top > highestTop) fail(key, fmt::format("has {}, more than {}", top, highestTop));
+    }
+    [[noreturn]] void fail(const char* key, const std::string& reason) const {
+        file_.fail(file_.field(key), reason);
     }
 
 private:
@@ -295,8 +301,13 @@ std::vector<Measured> readMeasured(const JsonFields& root, const Reader& reader)
     }
     const std::size_t terms = logTerms().size();
     const std::vector<float> exponents = reader.floats("exponents", channels * terms),
-                             tops = reader.floats("tops", channels);
+                             tops = reader.floats("tops", channels),
+                             rests = reader.floats("rests",
+                                                   reader.has("rests") ? all.size() * restRows : 0);
     reader.requireTops(tops, "tops");
+    for (const float rest : rests)
+        if (rest < 0) reader.fail("rests", fmt::format("has {}, expected 0 or more", rest));
+    for (std::size_t n = 0; n < rests.size(); ++n) all[n / restRows].rest.push_back(rests[n]);
     channels = 0;
     for (Measured& m : all) {
         const auto first = static_cast<std::ptrdiff_t>(channels);
@@ -337,6 +348,7 @@ void writeLibrary(const Library& library, AtomicFile& file) {
         writer.add("exponents", {all.tops.size(), terms}, all.exponents);
         writer.add("tops", {all.tops.size()}, all.tops);
     }
+    if (!all.rests.empty()) writer.add("rests", {library.measured.size(), restRows}, all.rests);
     writer.write(file);
 }
 

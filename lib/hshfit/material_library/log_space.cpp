@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace hshfit::material_library {
@@ -48,7 +49,45 @@ std::vector<double> ridgeTops(const Brdf& brdf) {
     return tops;
 }
 
+/// Measured::rest of residuals, [pair][channel].
+std::vector<float> restOf(Eigen::MatrixXd residuals, const PairSample& pairs) {
+    // A grey material has its channel for every colour.
+    if (residuals.cols() == 1) residuals = residuals.replicate(1, 3).eval();
+    const Eigen::MatrixXd squares = (residuals * planeMatrix().transpose()).cwiseAbs2();
+    std::array<double, restRows> sums{};
+    std::array<double, restZones> counts{};
+    for (std::size_t n = 0; n < pairs.size(); ++n) {
+        const auto row = squares.row(static_cast<Eigen::Index>(n));
+        const std::size_t zone = restZone(pairs.incoming(n), pairs.outgoing(n));
+        counts[zone] += 1;
+        sums[zone] += row[0];
+        sums[restZones + zone] += (row[1] + row[2]) / 2;
+    }
+    std::vector<float> means;
+    for (std::size_t k = 0; k < restRows; ++k)
+        means.push_back(static_cast<float>(sums[k] / std::max(counts[k % restZones], 1.0)));
+    return means;
+}
+
 }  // namespace
+
+std::size_t restZone(const Direction& wi, const Direction& wo) {
+    static const std::array<double, 3> low{std::cos(radians(60)), std::cos(radians(75)),
+                                           std::cos(radians(85))};
+    static const std::array<double, 2> half{std::cos(radians(2)), std::cos(radians(20))};
+    const Direction h{wi.x + wo.x, wi.y + wo.y, wi.z + wo.z};
+    const double lowest = std::min(wi.z, wo.z), cosine = h.z / std::sqrt(dot(h, h));
+    std::size_t zone = 0;
+    for (const double edge : low) zone += lowest < edge ? half.size() + 1 : 0;
+    for (const double edge : half) zone += cosine < edge ? 1 : 0;
+    return zone;
+}
+
+Eigen::Matrix3d planeMatrix() {
+    Eigen::Matrix3d q;
+    q << 1, 1, 1, 1, 0, -1, 1, -2, 1;
+    return q.rowwise().normalized();
+}
 
 LogMaterial Measured::material() const {
     return {{exponents.begin(), exponents.end()}, {tops.begin(), tops.end()}};
@@ -106,6 +145,7 @@ Measured LogSpace::project(const Brdf& brdf, const std::string& name, const std:
             static_cast<float>(std::max(ridgeTop[k], logs.col(column).maxCoeff())));
     }
     const LogBrdf form(measured.material(), name);
+    measured.rest = restOf(logs - samples_->terms * c, samples_->pairs);
     measured.error = formError(brdf, form, errorPairs());
     if (seen) measured.error.flip = pictureError(brdf, form).flip.mean;
     return measured;

@@ -19,6 +19,9 @@ struct Measured {
     std::string source;  ///< the specification
     std::vector<float> exponents, tops;
     FormError error = {};
+    /// Mean squares of ln(f + logOffset) beyond the terms: of the sum of the channels over root 3
+    /// in each zone of pairs, then of differences; empty where a file does not say it.
+    std::vector<float> rest = {};
 
     std::size_t channels() const { return tops.size(); }
     LogMaterial material() const;

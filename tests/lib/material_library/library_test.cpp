@@ -1,11 +1,13 @@
 // A library against materials that are sums of its terms, so that what it has to find is known.
 
 #include <hshfit/error.h>
+#include <hshfit/material_library/internal/log_samples.h>
 #include <hshfit/material_library/library.h>
 #include <hshfit/material_library/library_file.h>
 #include <hshfit/material_library/log_terms.h>
 #include <temporary_file.h>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -48,7 +50,7 @@ std::vector<Measured> family(std::size_t count, unsigned seed) {
     std::vector<Measured> all;
     for (std::size_t n = 0; n < count; ++n) {
         const double a = number(random), b = number(random);
-        all.push_back(space().project(madeOf({a, b}), "m" + std::to_string(1000 + n), "made"));
+        all.push_back(space().project(madeOf({a, b}), fmt::format("m{}", 1000 + n), "made"));
     }
     return all;
 }
@@ -82,6 +84,64 @@ TEST(Codes, RoundToHalfAStepAndKeepTheBoundAboveTheGreatestValue) {
     EXPECT_LE(back.top, 1.234 + 1.0 / 12);
     // Beyond the width the nearest number is taken.
     EXPECT_EQ(unpack(basis, pack(basis, std::vector<double>{9, 9, 0}, 0)).coordinates[0], 0.25);
+}
+
+/// A material of twelve normal numbers of falling spread.
+LogBrdf ofTwelve(std::mt19937& random) {
+    std::normal_distribution<double> number;
+    LogMaterial material = madeOf({}).material();
+    for (std::size_t n = 0; n < 12; ++n)
+        material.exponents[20 + 11 * n] += 0.4 * number(random) / static_cast<double>(n + 1);
+    return LogBrdf(std::move(material), "made");
+}
+
+/// The cost that codes are made for, over all pairs: of errors d of the exponents of a grey
+/// material.
+double costOf(const LogMaterial& material, const Eigen::VectorXd& d) {
+    const LogSamples& samples = space().samples();
+    const Eigen::Map<const Eigen::VectorXd> exponents(material.exponents.data(), d.size());
+    const Eigen::VectorXd logs = samples.terms * exponents, errors = samples.terms * d;
+    double peaks = 0, weight = 0;
+    for (std::size_t n = 0; n < samples.pairs.size(); ++n) {
+        const auto k = static_cast<Eigen::Index>(n);
+        const double f = std::exp(std::min(logs[k], material.tops[0])) - logOffset;
+        const double u = samples.pairs.weights[n] * std::pow(f * samples.pairs.z[n], 2);
+        peaks += u * errors[k] * errors[k];
+        weight += u;
+    }
+    const Eigen::VectorXd seen = samples.seen.terms * d;
+    return d.dot(samples.metric * d) + peaks / weight +
+           4 * samples.seen.weights(material).col(0).dot(seen.cwiseAbs2());
+}
+
+TEST(Codes, AreTheBestOfTheirNeighbours) {
+    std::mt19937 random(8);
+    std::vector<Measured> all;
+    for (int n = 0; n < 12; ++n)
+        all.push_back(space().project(ofTwelve(random), fmt::format("m{}", 100 + n), "made"));
+    const Library library = learn(space(), std::move(all), {}, {.components = 3, .bytes = 9},
+                                  {.log = 10, .maximum = 10, .flip = 1});
+    const Basis& basis = library.basis;
+    ASSERT_EQ(basis.size(), 3u);
+    for (int trial = 0; trial < 4; ++trial) {
+        const LogMaterial material = space().project(ofTwelve(random), "x", "made").material();
+        const std::vector<std::uint8_t> code = Encoder(basis, space()).encode(material, 3);
+        const std::vector<double> found = unpack(basis, code).coordinates;
+        double least = 0, ours = 0;
+        for (int n = 0; n < 27; ++n) {
+            std::vector<double> near = found;
+            for (int k = 0, rest = n; k < 3; ++k, rest /= 3)
+                near[static_cast<std::size_t>(k)] += basis.step * (rest % 3 - 1);
+            const LogMaterial decoded = decode(basis, pack(basis, near, material.tops[0]));
+            Eigen::VectorXd d(static_cast<Eigen::Index>(logTerms().size()));
+            for (std::size_t t = 0; t < logTerms().size(); ++t)
+                d[static_cast<Eigen::Index>(t)] = decoded.exponents[t] - material.exponents[t];
+            const double cost = costOf(material, d);
+            least = n == 0 ? cost : std::min(least, cost);
+            if (n == 13) ours = cost;
+        }
+        EXPECT_LE(ours, 1.02 * least) << trial;
+    }
 }
 
 TEST(Learning, FindsTheTwoNumbersOfAFamily) {
@@ -225,6 +285,15 @@ TEST_F(LibraryFile, ReadingGivesWhatWasWritten) {
     EXPECT_EQ(bytesOf(library, again.path()), file());
     EXPECT_EQ(library.measured.size(), 7u);
     EXPECT_EQ(library.materials.size(), 7u);
+}
+
+TEST_F(LibraryFile, TheRestBeyondTheTermsIsKeptAndMayBeAbsent) {
+    Library library = parsed(file());
+    EXPECT_EQ(library.measured.front().rest, family(6, 6).front().rest);
+    ASSERT_FALSE(library.measured.front().rest.empty());
+    for (Measured& one : library.measured) one.rest.clear();
+    const test::TemporaryFile again("");
+    EXPECT_TRUE(parsed(bytesOf(library, again.path())).measured.front().rest.empty());
 }
 
 TEST_F(LibraryFile, CutFilesAreRefused) {

@@ -2,8 +2,21 @@
 
 #include <hshfit/accuracy/pair_sample.h>
 #include <hshfit/linear_algebra/decompositions.h>
+#include <hshfit/material_library/internal/seen_pairs.h>
+
+#include <cstddef>
 
 namespace hshfit::material_library {
+
+/// Zones of pairs in which the rest beyond the terms is alike: by the angle of the lower direction,
+/// up to 60, 75, 85 and 90 degrees, then by the angle of the half vector, up to 2, 20 and 90.
+inline constexpr std::size_t restZones = 12;
+/// Measured::rest has those of the sum of the channels, then those of their differences.
+inline constexpr std::size_t restRows = 2 * restZones;
+std::size_t restZone(const Direction& wi, const Direction& wo);
+
+/// The sum of three channels and two differences: an orthogonal matrix.
+Eigen::Matrix3d planeMatrix();
 
 /// Fixed pairs with weights that sum to 1, the terms at each, and the metric that they give:
 ///     |d|^2 = c^T A c,   A = X^T W X + ridge,   d = L^T c,   A = L L^T,
@@ -16,6 +29,7 @@ struct LogSamples {
     linear_algebra::RowMajor terms;  ///< X: [pair][term]
     Eigen::MatrixXd metric;          ///< A
     Eigen::MatrixXd lower;           ///< L
+    SeenPairs seen;
 
     /// A^-1 b, column by column.
     Eigen::MatrixXd solve(Eigen::MatrixXd right) const;
