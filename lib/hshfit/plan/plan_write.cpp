@@ -103,7 +103,8 @@ std::string planText(const Plan& plan) {
         if (accepted.cost) out += fmt::format("  its shader: {} cycles\n", accepted.cost->cycles);
         out += "  " + summaryOf(accepted.picture) + "\n";
         if (const auto reason = poorReason(1 - accepted.pairs.energyLeft.value, accepted.picture))
-            out += fmt::format("  poor beyond the light of this scene: {}\n", *reason);
+            out += fmt::format("  poor beyond the light of this scene: {}{}\n", *reason,
+                               material.budget.flip ? "" : "; \"flip\" in the budget bounds it");
         const std::string lines = textOf(accepted.pairs);
         for (std::size_t at = 0, end = 0; at < lines.size(); at = end + 1) {
             end = std::min(lines.find('\n', at), lines.size());
