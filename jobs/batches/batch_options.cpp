@@ -32,7 +32,8 @@ constexpr OptionRow batchRows[] = {
               "Write table.csv, table.jsonl, times.csv and index.html of all items"},
     OptionRow{"thumbnails", at<&BatchRequest::merging, &MergeOptions::thumbnail>,
               "With --merge: pixels of each material's sphere; 0: none"}
-        .within(Bounds<int>{0, 512}),
+        .within(Bounds<int>{0, 512})
+        .with("merge"),
 };
 
 }  // namespace

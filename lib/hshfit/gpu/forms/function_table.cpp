@@ -77,7 +77,7 @@ void lower(std::vector<double>& values, std::size_t count, std::size_t stride) {
 std::vector<std::vector<double>> sumsAtNodes(const HalfwayExpansion& expansion,
                                              const TableSize& size) {
     const HalfwayAxes::Constants& k = expansion.axes().constants();
-    const std::size_t terms = expansion.terms().size(), channels = expansion.channels();
+    const std::size_t channels = expansion.channels();
     const std::vector<double> angles = nodesOf(size.half, pi / 2, [&](double t) {
         return halfOf(k, std::sin(t) * std::sin(t), std::cos(t));
     });
@@ -86,15 +86,10 @@ std::vector<std::vector<double>> sumsAtNodes(const HalfwayExpansion& expansion,
         nodesOf(size.horizon, 1, [](double t) { return horizonOf(1 - t); });
     std::vector<std::vector<double>> sums(channels, std::vector<double>(size.nodes()));
     tbb::parallel_for(std::size_t{0}, size.horizon * size.plane, [&](std::size_t row) {
-        std::vector<double> values(terms), at(channels);
         for (std::size_t n = 0; n < size.half; ++n) {
-            expansion.terms().evaluate(
-                pointAt(k, angles[n], lengths[row % size.plane], 1 - shares[row / size.plane]),
-                values.data());
-            std::fill(at.begin(), at.end(), 0.0);
-            for (std::size_t t = 0; t < terms; ++t)
-                for (std::size_t c = 0; c < channels; ++c)
-                    at[c] += expansion.value(t, c) * values[t];
+            const std::vector<double> at = sumsAt(
+                expansion,
+                pointAt(k, angles[n], lengths[row % size.plane], 1 - shares[row / size.plane]));
             for (std::size_t c = 0; c < channels; ++c) sums[c][row * size.half + n] = at[c];
         }
     });
@@ -116,6 +111,14 @@ struct Between {
 };
 
 }  // namespace
+
+std::vector<double> sumsAt(const HalfwayExpansion& expansion, const HalfwayPoint& point) {
+    std::vector<double> values(expansion.terms().size()), sums(expansion.channels(), 0.0);
+    expansion.terms().evaluate(point, values.data());
+    for (std::size_t t = 0; t < values.size(); ++t)
+        for (std::size_t c = 0; c < sums.size(); ++c) sums[c] += expansion.value(t, c) * values[t];
+    return sums;
+}
 
 TablePlace tablePlace(const HalfwayAxes& axes, const Direction& wi, const Direction& wo) {
     const double hx = wi.x + wo.x, hy = wi.y + wo.y, hz = wi.z + wo.z, gap = wo.z - wi.z;

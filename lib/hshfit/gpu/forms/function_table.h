@@ -35,6 +35,10 @@ struct TablePlace {
 };
 TablePlace tablePlace(const HalfwayAxes& axes, const Direction& wi, const Direction& wo);
 
+/// The sums of all terms of a halfway form at a point, smooth and of the lobe together: one a
+/// channel.
+std::vector<double> sumsAt(const HalfwayExpansion& expansion, const HalfwayPoint& point);
+
 /// Sums of the terms of a halfway form, smooth and of the lobe together, at the nodes of a grid, in
 /// float16: layer g has the sums 4 g .. 4 g + 3, as many rows as nodes along `plane`, one group of
 /// rows after another for the nodes along `horizon`, and texels along `half`. A number is less than

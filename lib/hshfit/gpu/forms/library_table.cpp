@@ -99,30 +99,12 @@ std::vector<MaterialChannel> channelsOf(const SharedSums& sums) {
     return channels;
 }
 
-/// All functions without a table.
-class ExactFunctions {
-public:
-    explicit ExactFunctions(const Representation& functions) : expansion_(functions) {}
-    std::vector<double> at(const DirectionPair& pair) const {
-        const std::size_t terms = expansion_.terms().size();
-        std::vector<double> values(terms), sums(expansion_.channels(), 0.0);
-        expansion_.terms().evaluate(expansion_.axes().at(pair.wi, pair.wo), values.data());
-        for (std::size_t t = 0; t < terms; ++t)
-            for (std::size_t c = 0; c < sums.size(); ++c)
-                sums[c] += expansion_.value(t, c) * values[t];
-        return sums;
-    }
-
-private:
-    HalfwayExpansion expansion_;
-};
-
 }  // namespace
 
 TableError tableError(const SharedSums& exact, const SharedSums& tabled) {
     assert(!exact.table && tabled.table && exact.count() == tabled.count());
     static const std::vector<DirectionPair> pairs = pairsOfTables();
-    const ExactFunctions functions(exact.functions);
+    const HalfwayExpansion functions(exact.functions);
     const std::vector<MaterialChannel> ours = channelsOf(tabled), theirs = channelsOf(exact);
     const double least = std::log(exact.offset);
     std::vector<TableError> parts((pairs.size() + blockSize - 1) / blockSize);
@@ -130,7 +112,8 @@ TableError tableError(const SharedSums& exact, const SharedSums& tabled) {
         std::vector<double> found(4 * tabled.table->groups());
         const std::size_t end = std::min(pairs.size(), (n + 1) * blockSize);
         for (std::size_t k = n * blockSize; k < end; ++k) {
-            const std::vector<double> right = functions.at(pairs[k]);
+            const std::vector<double> right =
+                sumsAt(functions, functions.axes().at(pairs[k].wi, pairs[k].wo));
             tabled.table->evaluate(pairs[k].wi, pairs[k].wo, FunctionTable::Weights::filtered,
                                    found.data());
             for (std::size_t c = 0; c < ours.size(); ++c) {
