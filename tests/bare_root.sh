@@ -68,7 +68,28 @@ unshare --mount sh -c '
     root=$1 place=$2
     shift 2
     mount -t proc proc "$root/proc"
-    mount --rbind /dev "$root/dev"
+    # Devices of its own, with the modes of a new machine: this one may have others, and apt
+    # checks signatures as a user who has to be able to write to /dev/null.
+    mount -t tmpfs -o mode=755 tmpfs "$root/dev"
+    mkdir "$root/dev/shm" "$root/dev/pts"
+    if mknod -m 666 "$root/dev/null" c 1 3 2>&1; then
+        mknod -m 666 "$root/dev/zero" c 1 5
+        mknod -m 666 "$root/dev/full" c 1 7
+        mknod -m 666 "$root/dev/random" c 1 8
+        mknod -m 666 "$root/dev/urandom" c 1 9
+        mknod -m 666 "$root/dev/tty" c 5 0
+        ln -s /proc/self/fd "$root/dev/fd"
+        ln -s fd/0 "$root/dev/stdin"
+        ln -s fd/1 "$root/dev/stdout"
+        ln -s fd/2 "$root/dev/stderr"
+        chmod 1777 "$root/dev/shm"
+        mount -t devpts -o newinstance,ptmxmode=0666,mode=620 devpts "$root/dev/pts"
+        ln -s pts/ptmx "$root/dev/ptmx"
+    else
+        echo "bare_root: no devices can be made here; those of this machine serve"
+        umount "$root/dev"
+        mount --rbind /dev "$root/dev"
+    fi
     if [ -n "${BARE_CCACHE:-}" ]; then
         mkdir -p "$root/var/cache/ccache"
         mount --bind "$BARE_CCACHE" "$root/var/cache/ccache"
