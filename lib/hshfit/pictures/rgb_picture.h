@@ -19,9 +19,15 @@ struct RgbPicture {
     std::vector<float> values = {};  ///< [row][column][R, G, B]
 };
 
+/// Pixels darker than this part of the brightest have no light.
+inline constexpr double unlit = 1.0 / 512;
+
 /// The exposure, in stops, at which 95 % of the pixels have their largest channel at or below
-/// `shownAsWhite`, rounded to a tenth; 0 for black.
+/// `shownAsWhite`, but none that shows an unlit pixel so: of a narrow highlight on black, rounding
+/// would be all there is to see. Rounded to a tenth; 0 for black.
 double automaticExposure(const RgbPicture& picture);
+/// Likewise from the largest channel of each pixel.
+double automaticExposure(std::vector<float> largest);
 
 /// Throws NumericError, which names the picture and the pixel, for a value that is not finite.
 void requireFinite(const std::string& name, std::size_t width, std::span<const float> rgb);

@@ -271,6 +271,18 @@ TEST(SpherePicture, DifferencesAndExposures) {
     EXPECT_NEAR(shown[shown.size() * 95 / 100], 0.8, 0.8 * 0.05);
 }
 
+TEST(Sphere, AHighlightOnBlackIsNotExposedAtRounding) {
+    SpherePicture spot;
+    spot.size = 10;
+    spot.coverage.assign(100, 1.0F);
+    spot.radiance.assign(300, 1e-12F);
+    spot.radiance[0] = 4;
+    // The brightest pixel is shown 512 times as bright as 0.8.
+    EXPECT_NEAR(automaticExposure({&spot, 1}), std::log2(0.8 * 512 / 4), 0.05 + 1e-9);
+    spot.radiance.assign(300, 0);
+    EXPECT_EQ(automaticExposure({&spot, 1}), 0);
+}
+
 TEST(Sphere, TheSameWhateverTheThreads) {
     const FormulaBrdf f(
         [](const Direction& wi, const Direction& wo) {
