@@ -25,6 +25,7 @@ namespace {
 
 constexpr int pixels = 48;               // along an edge of a picture
 constexpr double sphereDegrees = 4;      // the width of the sphere that an observer sees
+constexpr double unlit = 1.0 / 512;      // of the brightest pixel: darker ones have no light
 constexpr double perLargest = 1.0 / 20;  // of the largest channel: less is not seen beside it
 constexpr double darkest = 1e-3;         // 1/sr, and of albedos: black
 
@@ -138,7 +139,10 @@ Stage stageOf(const SphereRig& rig) {
 
 /// FLIP and CIEDE2000 under one light.
 std::pair<double, double> differences(const SpherePicture& f, const SpherePicture& g) {
-    const double stops = automaticExposure({&f, 1});
+    const double brightest = *std::max_element(f.radiance.begin(), f.radiance.end());
+    // Where all but the highlight is black, no exposure shows what counts as unlit as white.
+    const double stops =
+        std::min(automaticExposure({&f, 1}), std::log2(shownAsWhite / (unlit * brightest)));
     const RgbPicture reference = exposed(f, stops), test = exposed(g, stops);
     const double colour = meanOver(
         f, [](std::size_t) { return true; },

@@ -16,6 +16,8 @@ namespace hshfit::inline pictures {
 namespace {
 
 constexpr std::array<const char*, 3> colours{"R", "G", "B"};
+/// Linear sRGB of the first step of eight bits above black.
+constexpr double firstStep = 1 / (255 * 12.92);
 
 }  // namespace
 
@@ -55,7 +57,7 @@ double automaticExposure(std::vector<float> largest) {
     std::nth_element(largest.begin(), at, largest.end());
     const double brightest = *std::max_element(at, largest.end());
     if (!(brightest > 0)) return 0;
-    const double shown = std::max(static_cast<double>(*at), unlit * brightest);
+    const double shown = std::max(static_cast<double>(*at), firstStep * brightest);
     return std::round(10 * std::log2(shownAsWhite / shown)) / 10;
 }
 

@@ -2,6 +2,7 @@
 
 #include <hshfit/error.h>
 #include <hshfit/files/exr_picture.h>
+#include <hshfit/pictures/rgb_picture.h>
 #include <hshfit/pictures/sphere_picture.h>
 
 #include "lib/coefficient_files/coefficient_samples.h"
@@ -277,8 +278,10 @@ TEST(Sphere, AHighlightOnBlackIsNotExposedAtRounding) {
     spot.coverage.assign(100, 1.0F);
     spot.radiance.assign(300, 1e-12F);
     spot.radiance[0] = 4;
-    // The brightest pixel is shown 512 times as bright as 0.8.
-    EXPECT_NEAR(automaticExposure({&spot, 1}), std::log2(0.8 * 512 / 4), 0.05 + 1e-9);
+    // 0.8 is a radiance that is the first step above black where that of 4 is white.
+    const double shown = 0.8 / std::exp2(automaticExposure({&spot, 1}));
+    EXPECT_EQ(encoded(0.95 * shown / 4), 1);
+    EXPECT_EQ(encoded(0.4 * shown / 4), 0);
     spot.radiance.assign(300, 0);
     EXPECT_EQ(automaticExposure({&spot, 1}), 0);
 }

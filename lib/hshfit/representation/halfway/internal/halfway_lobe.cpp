@@ -23,6 +23,8 @@ constexpr HalfwayOrders few{9, 7, 5};
 constexpr int trialSteps = 8;
 constexpr std::array widths{0.9, 0.5, 0.25, 0.12, 0.06, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4};
 constexpr double finer = 1.4;
+/// The share of the least loss that the other masking has to be below.
+constexpr double clearly = 0.5;
 /// A masked lobe is GGX's BRDF where the shelf is 0.
 constexpr std::array shelves{0.05, 0.01, 0.002}, maskedShelves{0.05, 0.002, 2e-4};
 constexpr std::array ratios{1.5, 2.5, 4.0, 7.0, 12.0};
@@ -72,13 +74,14 @@ public:
     Trials(const HalfwaySamples& grey, const HalfwayTerms& terms, double floor)
         : grey_(grey), terms_(terms), floor_(floor) {}
 
-    void add(const std::vector<HalfwayLobe>& lobes) {
+    /// A lobe whose loss is below `share` of the least so far takes its place.
+    void add(const std::vector<HalfwayLobe>& lobes, double share = 1) {
         std::vector<double> losses(lobes.size());
         std::vector<HalfwayValues> values(lobes.size());
         tbb::parallel_for(std::size_t{0}, lobes.size(),
                           [&](std::size_t k) { losses[k] = fit(lobes[k], values[k]); });
         const auto least = std::ranges::min_element(losses);
-        if (!(*least < least_)) return;
+        if (!(*least < share * least_)) return;
         const auto k = static_cast<std::size_t>(least - losses.begin());
         least_ = *least;
         best_ = {lobes[k], terms_.orders(), std::move(values[k])};
@@ -170,7 +173,8 @@ LobeFound chooseLobe(const HalfwaySamples& grey, const HalfwayOrders& orders,
         trials.add(tried);
     }
     trials.add(about(trials.best().lobe, {finer, 1.0, 1 / finer}, masked));
-    trials.add(about(trials.best().lobe, {1.0}, !masked));
+    // On files the loss differs by a twentieth, and masking is brighter towards the horizon.
+    trials.add(about(trials.best().lobe, {1.0}, !masked), clearly);
     if (!symmetry.isotropic) {
         for (const double step : refinements) trials.add(besides(trials.best().lobe, step));
     }
