@@ -46,6 +46,7 @@ Ordered describe(const Representation& r) {
                        {"across", content.lobe.across},
                        {"turn", content.lobe.turn},
                        {"shelf", content.lobe.shelf}};
+        if (content.lobe.masked) out["lobe"]["masked"] = true;
         Ordered& ceilings = out["ceilings"] = Ordered::array();
         for (const HalfwayCeiling& each : content.ceilings)
             ceilings.push_back({{"smooth", each.smooth}, {"lobe", each.lobe}, {"top", each.top}});
@@ -224,7 +225,7 @@ Representation representationFromJson(std::string_view text, const std::string& 
         }
         const JsonFields lobe = part.object("lobe");
         content.lobe = {lobe.number("along"), lobe.number("across"), lobe.number("turn"),
-                        lobe.number("shelf")};
+                        lobe.number("shelf"), lobe.has("masked") && lobe.flag("masked")};
         for (const JsonFields& each : part.objects("ceilings")) {
             content.ceilings.push_back(
                 {each.number("smooth"), each.number("lobe"), each.number("top")});

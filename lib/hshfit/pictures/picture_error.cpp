@@ -25,8 +25,8 @@ namespace {
 
 constexpr int pixels = 48;               // along an edge of a picture
 constexpr double sphereDegrees = 4;      // the width of the sphere that an observer sees
-constexpr double perLargest = 1.0 / 20;  // of the largest channel: less is not seen beside it
 constexpr double unlit = 1.0 / 512;      // of the brightest pixel: darker ones have no light
+constexpr double perLargest = 1.0 / 20;  // of the largest channel: less is not seen beside it
 constexpr double darkest = 1e-3;         // 1/sr, and of albedos: black
 
 using Rgb = std::array<double, 3>;

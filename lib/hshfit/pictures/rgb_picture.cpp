@@ -10,11 +10,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace hshfit::inline pictures {
 namespace {
 
 constexpr std::array<const char*, 3> colours{"R", "G", "B"};
+/// Linear sRGB of the first step of eight bits above black.
+constexpr double firstStep = 1 / (255 * 12.92);
 
 }  // namespace
 
@@ -44,11 +47,18 @@ double automaticExposure(const RgbPicture& picture) {
     std::vector<float> largest;
     for (std::size_t i = 0; i < picture.values.size(); i += 3)
         largest.push_back(*std::max_element(&picture.values[i], &picture.values[i] + 3));
+    return automaticExposure(std::move(largest));
+}
+
+double automaticExposure(std::vector<float> largest) {
     if (largest.empty()) return 0;
     const auto at = largest.begin() +
                     static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(largest.size() - 1));
     std::nth_element(largest.begin(), at, largest.end());
-    return *at > 0 ? std::round(10 * std::log2(shownAsWhite / static_cast<double>(*at))) / 10 : 0;
+    const double brightest = *std::max_element(at, largest.end());
+    if (!(brightest > 0)) return 0;
+    const double shown = std::max(static_cast<double>(*at), firstStep * brightest);
+    return std::round(10 * std::log2(shownAsWhite / shown)) / 10;
 }
 
 void requireFinite(const std::string& name, std::size_t width, std::span<const float> rgb) {

@@ -20,8 +20,12 @@ struct RgbPicture {
 };
 
 /// The exposure, in stops, at which 95 % of the pixels have their largest channel at or below
-/// `shownAsWhite`, rounded to a tenth; 0 for black.
+/// `shownAsWhite`, but none that shows so what eight bits of sRGB tell from black no more beside
+/// the brightest pixel, a 3,295th of it: of a narrow highlight on black, rounding would be all
+/// there is to see. Rounded to a tenth; 0 for black.
 double automaticExposure(const RgbPicture& picture);
+/// Likewise from the largest channel of each pixel.
+double automaticExposure(std::vector<float> largest);
 
 /// Throws NumericError, which names the picture and the pixel, for a value that is not finite.
 void requireFinite(const std::string& name, std::size_t width, std::span<const float> rgb);

@@ -15,9 +15,9 @@
 namespace hshfit::inline pictures {
 namespace {
 
-/// The largest channel of every pixel of which `share` is at or below it; 0 without pixels.
-double quantileOfPixels(std::span<const SpherePicture> spheres, double share) {
-    std::vector<double> largest;
+/// The largest channel of every pixel of spheres.
+std::vector<float> largestChannels(std::span<const SpherePicture> spheres) {
+    std::vector<float> largest;
     for (const SpherePicture& sphere : spheres) {
         for (std::size_t i = 0; i < sphere.coverage.size(); ++i) {
             if (sphere.coverage[i] == 0) continue;
@@ -25,6 +25,12 @@ double quantileOfPixels(std::span<const SpherePicture> spheres, double share) {
             largest.push_back(*std::max_element(rgb, rgb + 3));
         }
     }
+    return largest;
+}
+
+/// The largest channel of every pixel of which `share` is at or below it; 0 without pixels.
+double quantileOfPixels(std::span<const SpherePicture> spheres, double share) {
+    std::vector<float> largest = largestChannels(spheres);
     if (largest.empty()) return 0;
     const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(largest.size() - 1));
     std::nth_element(largest.begin(), largest.begin() + at, largest.end());
@@ -92,8 +98,7 @@ ExrPicture exrOf(const Sheet& sheet) {
 }  // namespace
 
 double automaticExposure(std::span<const SpherePicture> spheres) {
-    const double bright = quantileOfPixels(spheres, 0.95);
-    return bright > 0 ? std::round(10 * std::log2(shownAsWhite / bright)) / 10 : 0;
+    return automaticExposure(largestChannels(spheres));
 }
 
 SpherePicture sphereDifference(const SpherePicture& reference, const SpherePicture& approximation) {

@@ -10,8 +10,8 @@
 
 namespace hshfit::inline pictures {
 
-/// The exposure, in stops, at which 95 % of the spheres' pixels have their largest channel at or
-/// below 0.8 of white: highlights may clip, surfaces do not. Rounded to a tenth; 0 for black.
+/// The automatic exposure (rgb_picture.h) of the spheres' pixels: highlights may clip, surfaces do
+/// not.
 double automaticExposure(std::span<const SpherePicture> spheres);
 
 /// approximation - reference, channel by channel. Of the same size.

@@ -44,10 +44,12 @@ struct MatrixFactors {
     std::vector<MatrixBlock> blocks;
 };
 /// The GGX lobe that the halfway form is built about: its roughness along an axis of the surface
-/// that is turned from x by `turn` radians, and across it, and what bounds it at the horizon. See
-/// halfway_axes.h.
+/// that is turned from x by `turn` radians, and across it, and what bounds it at the horizon.
+/// `masked`: by Smith's masking of its facets, which depends on the azimuth where the lobe is not
+/// round. See halfway_axes.h.
 struct HalfwayLobe {
     double along = 0.5, across = 0.5, turn = 0, shelf = 0.05;
+    bool masked = false;
 };
 /// The bounds of one channel of the halfway form: of the exponents of both parts, and of f.
 struct HalfwayCeiling {

@@ -44,7 +44,11 @@ FormSample sample(const std::string& name, const Asked& asked, unsigned seed) {
     }
     if (asked.keep > 0) keepLargest(content.halfway, asked.keep);
     quantise(content.halfway, asked.precision);
-    content.lobe = {0.3, asked.symmetry.isotropic ? 0.3 : 0.12, 0};
+    if (asked.symmetry.isotropic) {
+        content.lobe = {0.3, 0.3, 0};
+    } else {
+        content.lobe = {0.3, 0.12, asked.symmetry.bilateral ? 0.0 : 0.4, 0.02, true};
+    }
     content.ceilings.assign(channels, {asked.ceiling, asked.ceiling, std::exp(asked.ceiling + 1)});
     r.content = std::move(content);
     return {name, std::move(r)};

@@ -2,6 +2,7 @@
 
 #include <hshfit/error.h>
 #include <hshfit/files/exr_picture.h>
+#include <hshfit/pictures/rgb_picture.h>
 #include <hshfit/pictures/sphere_picture.h>
 
 #include "lib/coefficient_files/coefficient_samples.h"
@@ -269,6 +270,20 @@ TEST(SpherePicture, DifferencesAndExposures) {
     }
     std::sort(shown.begin(), shown.end());
     EXPECT_NEAR(shown[shown.size() * 95 / 100], 0.8, 0.8 * 0.05);
+}
+
+TEST(Sphere, AHighlightOnBlackIsNotExposedAtRounding) {
+    SpherePicture spot;
+    spot.size = 10;
+    spot.coverage.assign(100, 1.0F);
+    spot.radiance.assign(300, 1e-12F);
+    spot.radiance[0] = 4;
+    // 0.8 is a radiance that is the first step above black where that of 4 is white.
+    const double shown = 0.8 / std::exp2(automaticExposure({&spot, 1}));
+    EXPECT_EQ(encoded(0.95 * shown / 4), 1);
+    EXPECT_EQ(encoded(0.4 * shown / 4), 0);
+    spot.radiance.assign(300, 0);
+    EXPECT_EQ(automaticExposure({&spot, 1}), 0);
 }
 
 TEST(Sphere, TheSameWhateverTheThreads) {

@@ -206,7 +206,8 @@ TEST(HalfwayMaterials, LobesConvergeWithOrder) {
              {HalfwayOrders{2, 1, 1}, HalfwayOrders{5, 4, 3}, HalfwayOrders{9, 8, 6}}) {
             const double error = projectHalfway(*brdf, orders, options).steps[0].change;
             std::printf(" %.5f", error);
-            EXPECT_LT(error, before) << spec;
+            // GGX's own lobe is exact with one term.
+            EXPECT_LT(error, std::max(before, 1e-4)) << spec;
             before = error;
         }
         std::printf("\n");

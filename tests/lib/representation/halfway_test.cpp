@@ -47,7 +47,7 @@ std::set<Key> keysOf(const HalfwayTerms& terms) {
 
 HalfwayLobe lobeFor(const HalfwaySymmetry& symmetry) {
     if (symmetry.isotropic) return {0.25, 0.25, 0};
-    return {0.25, 0.125, symmetry.bilateral ? 0.0 : 0.5};
+    return {0.25, 0.125, symmetry.bilateral ? 0.0 : 0.5, 0.05, symmetry.bilateral};
 }
 
 /// Random coefficients; both exponents stay within 1.2 of -0.5.

@@ -176,7 +176,11 @@ void setLobe(const Layout& layout, bool isotropic, FormText& text) {
     text.page.set("perLog", shaderNumber(axes.perLog));
     text.page.set("amplitude", shaderNumber(axes.amplitude));
     text.page.set("shelf", shaderNumber(axes.shelf));
-    text.cost.products += round ? 13 : 17;
+    text.page.set("masked", axes.masked);
+    text.page.set("lxx", shaderNumber(axes.lxx));
+    text.page.set("lxy", shaderNumber(axes.lxy));
+    text.page.set("lyy", shaderNumber(axes.lyy));
+    text.cost.products += (round ? 13 : 17) + (axes.masked ? 16 : 0);
 }
 
 /// The ceilings of the channels of each output; exponents to the base of the text's exponential.

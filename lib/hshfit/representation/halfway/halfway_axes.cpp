@@ -12,19 +12,29 @@ double stretchOf(double roughness) {
     return std::sqrt(1 / (roughness * roughness) - 1);
 }
 
+/// l of a direction.
+double maskingOf(const HalfwayAxes::Constants& k, const Direction& w) {
+    return std::sqrt(w.z * w.z + k.lxx * w.x * w.x + k.lxy * w.x * w.y + k.lyy * w.y * w.y);
+}
+
 }  // namespace
 
 HalfwayAxes::HalfwayAxes(const HalfwayLobe& lobe) {
     const double c = std::cos(lobe.turn), s = std::sin(lobe.turn);
     const double along = stretchOf(lobe.along), across = stretchOf(lobe.across);
     const double least = std::min(lobe.along, lobe.across);
+    const double aa = lobe.along * lobe.along, bb = lobe.across * lobe.across;
     constants_ = {.xx = along * c,
                   .xy = along * s,
                   .yx = -across * s,
                   .yy = across * c,
                   .perLog = 1 / (-2 * std::log(least)),
                   .amplitude = 1 / (2 * pi * lobe.along * lobe.across),
-                  .shelf = lobe.shelf};
+                  .shelf = lobe.shelf,
+                  .masked = lobe.masked,
+                  .lxx = aa * c * c + bb * s * s,
+                  .lxy = 2 * (aa - bb) * c * s,
+                  .lyy = aa * s * s + bb * c * c};
 }
 
 HalfwayPoint HalfwayAxes::at(const Constants& k, const Direction& wi, const Direction& wo) {
@@ -47,8 +57,9 @@ HalfwayPoint HalfwayAxes::at(const Constants& k, const Direction& wi, const Dire
     p.handed = wi.x * wo.y - wi.y * wo.x;
     p.cosine = radius > 0 ? gx / radius : 1;
     p.sine = radius > 0 ? gy / radius : 0;
-    const double denominator = wi.z * wo.z + (wi.z + wo.z) / 2 + k.shelf;
-    p.weight = k.amplitude / ((1 + q) * (1 + q) * denominator);
+    const double facing = k.masked ? wo.z * maskingOf(k, wi) + wi.z * maskingOf(k, wo)
+                                   : wi.z * wo.z + (wi.z + wo.z) / 2;
+    p.weight = k.amplitude / ((1 + q) * (1 + q) * (facing + k.shelf));
     return p;
 }
 

@@ -19,9 +19,13 @@ namespace hshfit::inline representation::inline halfway {
 ///     weight  = the lobe L of a unit amplitude
 /// Here g is h in the frame of the lobe with g_x = h_x sqrt(1 / a^2 - 1), g_y = h_y sqrt(1 / b^2 -
 /// 1) for roughnesses a and b, Q = g_x^2 + g_y^2, and
-///     L = 1 / (2 pi a b (1 + Q)^2 (m_i m_o + (m_i + m_o) / 2 + s)),
+///     L = 1 / (2 pi a b (1 + Q)^2 (d + s)),
 /// GGX's distribution (Walter et al. 2007) over a denominator that s, the lobe's shelf, keeps away
-/// from 0 at the horizon. No angle is formed.
+/// from 0 at the horizon. In it
+///     d = m_i m_o + (m_i + m_o) / 2, or for a masked lobe d = m_o l_i + m_i l_o,
+///     l = sqrt(m^2 + (a w_x)^2 + (b w_y)^2), w_x and w_y in the frame of the lobe,
+/// Smith's masking of both directions by facets of correlated heights (Heitz 2014, eq. 99): L is
+/// then GGX's BRDF without Fresnel's reflectance, but for s. No angle is formed.
 struct HalfwayPoint {
     double mean, product, gap, v, x, kappa, handed, cosine, sine, weight;
 };
@@ -33,9 +37,12 @@ public:
     explicit HalfwayAxes(const HalfwayLobe& lobe);
 
     /// The numbers of the lobe in the formula above: g_x = xx h_x + xy h_y, g_y = yx h_x + yy h_y;
-    /// 1 / ln(1 + max Q); 1 / (2 pi a b); s.
+    /// 1 / ln(1 + max Q); 1 / (2 pi a b); s. l^2 = m^2 + lxx w_x^2 + lxy w_x w_y + lyy w_y^2 for
+    /// w_x and w_y in the frame of the surface.
     struct Constants {
         double xx, xy, yx, yy, perLog, amplitude, shelf;
+        bool masked;
+        double lxx, lxy, lyy;
     };
     const Constants& constants() const { return constants_; }
 

@@ -131,9 +131,18 @@ void fillTable(const HalfwayLayout<T>& layout, const Pairs<T>& pairs, std::size_
                   hn::IfThenZeroElse(pole, hn::Mul(gy, inverse)), x, layout.harmonics,
                   row(layout.rows.harmonics));
     }
-    const Vector<T> tail = hn::Add(one, q);
-    const Vector<T> denominator =
-        hn::MulAdd(mi, mo, hn::MulAdd(half, sum, set<T>(constants.shelf)));
+    const Vector<T> tail = hn::Add(one, q), shelf = set<T>(constants.shelf);
+    Vector<T> denominator = hn::MulAdd(mi, mo, hn::MulAdd(half, sum, shelf));
+    if (constants.masked) {
+        const auto masking = [&](Vector<T> wx, Vector<T> wy, Vector<T> m) {
+            const Vector<T> slope =
+                hn::MulAdd(set<T>(constants.lxx), wx, hn::Mul(set<T>(constants.lxy), wy));
+            const Vector<T> rest = hn::Mul(set<T>(constants.lyy), hn::Mul(wy, wy));
+            return hn::Sqrt(hn::MulAdd(m, m, hn::MulAdd(slope, wx, rest)));
+        };
+        denominator = hn::MulAdd(mo, masking(at(0), at(1), mi),
+                                 hn::MulAdd(mi, masking(at(3), at(4), mo), shelf));
+    }
     hn::Store(hn::Div(set<T>(constants.amplitude), hn::Mul(hn::Mul(tail, tail), denominator)),
               lanes, row(layout.rows.weight));
 }

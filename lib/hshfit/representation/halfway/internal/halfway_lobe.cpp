@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <vector>
 
@@ -22,20 +23,49 @@ constexpr HalfwayOrders few{9, 7, 5};
 constexpr int trialSteps = 8;
 constexpr std::array widths{0.9, 0.5, 0.25, 0.12, 0.06, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4};
 constexpr double finer = 1.4;
-/// Lobes are no narrower than this part of the half width of the peak.
-constexpr double narrower = 1;
-constexpr std::array shelves{0.05, 0.01, 0.002};
+/// The share of the least loss that the other masking has to be below.
+constexpr double clearly = 0.5;
+/// A masked lobe is GGX's BRDF where the shelf is 0.
+constexpr std::array shelves{0.05, 0.01, 0.002}, maskedShelves{0.05, 0.002, 2e-4};
 constexpr std::array ratios{1.5, 2.5, 4.0, 7.0, 12.0};
 constexpr int turns = 8;
+/// By which each of two widths is changed in the end.
+constexpr std::array refinements{1.2, 1.07};
 
 double inSingle(double value) {
     return static_cast<double>(static_cast<float>(value));
 }
 
-HalfwayLobe lobeOf(double width, double ratio, double turn, double shelf) {
+HalfwayLobe lobeOf(double width, double ratio, double turn, double shelf, bool masked) {
     const auto held = [](double w) { return inSingle(std::clamp(w, 2e-5, 0.89)); };
     const double root = std::sqrt(ratio);
-    return {held(width * root), held(width / root), inSingle(turn), inSingle(shelf)};
+    return {held(width * root), held(width / root), inSingle(turn), inSingle(shelf), masked};
+}
+
+/// Lobes with the ratio and the turn of one, its width times each factor, and each shelf.
+std::vector<HalfwayLobe> about(const HalfwayLobe& lobe, std::initializer_list<double> factors,
+                               bool masked) {
+    const double width = std::sqrt(lobe.along * lobe.across), ratio = lobe.along / lobe.across;
+    std::vector<HalfwayLobe> lobes;
+    for (const double factor : factors) {
+        for (const double shelf : masked ? maskedShelves : shelves)
+            lobes.push_back(lobeOf(width * factor, ratio, lobe.turn, shelf, masked));
+    }
+    return lobes;
+}
+
+/// The lobes about one whose widths are each by a step wider, as they are, or narrower.
+std::vector<HalfwayLobe> besides(const HalfwayLobe& lobe, double step) {
+    const double width = std::sqrt(lobe.along * lobe.across), ratio = lobe.along / lobe.across;
+    std::vector<HalfwayLobe> lobes;
+    for (const double along : {step, 1.0, 1 / step}) {
+        for (const double across : {step, 1.0, 1 / step}) {
+            if (along == 1 && across == 1) continue;
+            lobes.push_back(lobeOf(width * std::sqrt(along * across), ratio * along / across,
+                                   lobe.turn, lobe.shelf, lobe.masked));
+        }
+    }
+    return lobes;
 }
 
 /// The best of some lobes.
@@ -44,13 +74,14 @@ public:
     Trials(const HalfwaySamples& grey, const HalfwayTerms& terms, double floor)
         : grey_(grey), terms_(terms), floor_(floor) {}
 
-    void add(const std::vector<HalfwayLobe>& lobes) {
+    /// A lobe whose loss is below `share` of the least so far takes its place.
+    void add(const std::vector<HalfwayLobe>& lobes, double share = 1) {
         std::vector<double> losses(lobes.size());
         std::vector<HalfwayValues> values(lobes.size());
         tbb::parallel_for(std::size_t{0}, lobes.size(),
                           [&](std::size_t k) { losses[k] = fit(lobes[k], values[k]); });
         const auto least = std::ranges::min_element(losses);
-        if (!(*least < least_)) return;
+        if (!(*least < share * least_)) return;
         const auto k = static_cast<std::size_t>(least - losses.begin());
         least_ = *least;
         best_ = {lobes[k], terms_.orders(), std::move(values[k])};
@@ -121,9 +152,12 @@ LobeFound chooseLobe(const HalfwaySamples& grey, const HalfwayOrders& orders,
     const HalfwayTerms terms(smaller, symmetry);
     Trials trials(grey, terms, floor);
     std::vector<HalfwayLobe> tried;
-    const double least = halfWidth(grey) / narrower;
+    // Masking depends on the azimuth, which nothing else does where h is the normal.
+    const bool masked = !symmetry.isotropic;
+    const double shelf = masked ? maskedShelves[1] : shelves[0];
+    const double least = halfWidth(grey);
     for (const double width : widths) {
-        if (width >= least || tried.empty()) tried.push_back(lobeOf(width, 1, 0, shelves[0]));
+        if (width >= least || tried.empty()) tried.push_back(lobeOf(width, 1, 0, shelf, masked));
     }
     trials.add(tried);
     if (!symmetry.isotropic) {
@@ -133,19 +167,17 @@ LobeFound chooseLobe(const HalfwaySamples& grey, const HalfwayOrders& orders,
             for (int n = 0; n < (symmetry.bilateral ? 2 : turns); ++n) {
                 const double turn = symmetry.bilateral ? 0 : pi * n / turns;
                 const double along = symmetry.bilateral && n == 1 ? 1 / ratio : ratio;
-                tried.push_back(lobeOf(width, along, turn, shelves[0]));
+                tried.push_back(lobeOf(width, along, turn, shelf, masked));
             }
         }
         trials.add(tried);
     }
-    const HalfwayLobe near = trials.best().lobe;
-    const double width = std::sqrt(near.along * near.across), ratio = near.along / near.across;
-    tried.clear();
-    for (const double factor : {finer, 1.0, 1 / finer}) {
-        for (const double shelf : shelves)
-            tried.push_back(lobeOf(width * factor, ratio, near.turn, shelf));
+    trials.add(about(trials.best().lobe, {finer, 1.0, 1 / finer}, masked));
+    // On files the loss differs by a twentieth, and masking is brighter towards the horizon.
+    trials.add(about(trials.best().lobe, {1.0}, !masked), clearly);
+    if (!symmetry.isotropic) {
+        for (const double step : refinements) trials.add(besides(trials.best().lobe, step));
     }
-    trials.add(tried);
     return trials.best();
 }
 

@@ -26,9 +26,10 @@ struct LobeFound {
 };
 
 /// The lobe whose form of few terms has the least loss over samples of one channel: of widths from
-/// the half width of the peak to 0.9, then, where f is not isotropic, of ratios of the
-/// widths to 12, and where it is not bilateral, of turns; then of shelves. All are numbers of
-/// single precision.
+/// the half width of the peak to 0.9, then, where f is not isotropic, of ratios of the widths to
+/// 12, and where it is not bilateral, of turns; then of shelves; then with Smith's masking, or
+/// without it where f is not isotropic, if that halves the loss; then, where f is not isotropic, of
+/// both widths in small steps. All are numbers of single precision.
 LobeFound chooseLobe(const HalfwaySamples& grey, const HalfwayOrders& orders,
                      const HalfwaySymmetry& symmetry, double floor);
 
