@@ -61,10 +61,11 @@ private:
     double fit(const HalfwayLobe& lobe, HalfwayValues& values) const {
         const HalfwayAxes axes(lobe);
         const HalfwayModel model{terms_, axes, floor_};
-        values =
-            descended(model, {grey_, nullptr, roughHuber}, halfwayStart(model, grey_), trialSteps);
-        values = descended(model, {grey_, nullptr, fineHuber}, std::move(values), trialSteps);
-        return halfwayLoss(model, grey_, fineHuber, values);
+        HalfwayErrors errors(model, {grey_, nullptr, roughHuber});
+        values = descended(errors, halfwayStart(model, grey_), trialSteps);
+        errors.countSquaresUpTo(fineHuber);
+        values = descended(errors, std::move(values), trialSteps);
+        return errors.losses(values).front();
     }
 
     const HalfwaySamples& grey_;
@@ -142,8 +143,10 @@ LobeFound chooseLobe(const HalfwaySamples& grey, const HalfwayOrders& orders,
     const double width = std::sqrt(near.along * near.across), ratio = near.along / near.across;
     tried.clear();
     for (const double factor : {finer, 1.0, 1 / finer}) {
-        for (const double shelf : shelves)
+        for (const double shelf : shelves) {
+            if (factor == 1.0 && shelf == shelves[0]) continue;  // the best of those before
             tried.push_back(lobeOf(width * factor, ratio, near.turn, shelf));
+        }
     }
     trials.add(tried);
     return trials.best();
