@@ -20,8 +20,13 @@ namespace {
 /// f and g at one pair of directions, with c = cos(theta_i).
 struct Sample {
     double f, g, c;
+    double logRatio = 0;  ///< ln((f c + 1e-3) / (g c + 1e-3)), for Shared::logRatio
+    double growth = 0;    ///< ln(1 + g c) - ln(1 + f c), for Shared::growth
     double clamped() const { return std::max(g, 0.0); }
 };
+
+/// A part that several metrics use.
+enum class Shared { none, logRatio, growth };
 
 /// A metric as the ratio of two sums over samples, then `finish`. Metrics that are not of this form
 /// (maximum, albedo, reciprocity) have no `term` and are computed apart.
@@ -30,6 +35,7 @@ struct Formula {
     double (*term)(const Sample&);
     double (*scale)(const Sample&);  ///< null: the mean over directions
     double (*finish)(double);
+    Shared shared = Shared::none;
 };
 
 double square(double x) {
@@ -59,29 +65,28 @@ const Formula formulas[] = {
      [](const Sample& s) { return square(s.f); },
      [](double x) { return 1 - x; }},
     {{"log", "mean |ln((f c + 1e-3) / (g c + 1e-3))|", "", false},
-     [](const Sample& s) {
-         return std::abs(std::log((s.f * s.c + logOffset) / (s.clamped() * s.c + logOffset)));
-     },
+     [](const Sample& s) { return std::abs(s.logRatio); },
      nullptr,
-     identity},
+     identity,
+     Shared::logRatio},
     {{"ngan", "root mean square of (g - f) c", "Ngan, Durand & Matusik 2005", false},
      [](const Sample& s) { return square((s.g - s.f) * s.c); },
      nullptr,
      squareRoot},
     {{"low", "mean (ln(1 + g c) - ln(1 + f c))^2", "Löw et al. 2012", false},
-     [](const Sample& s) { return square(std::log1p(s.clamped() * s.c) - std::log1p(s.f * s.c)); },
+     [](const Sample& s) { return square(s.growth); },
      nullptr,
-     identity},
+     identity,
+     Shared::growth},
     {{"fores", "mean cube root of ((g - f) c)^2", "Fores, Ferwerda & Gu 2012", false},
      [](const Sample& s) { return std::cbrt(square((s.g - s.f) * s.c)); },
      nullptr,
      identity},
     {{"nbrdf", "mean |ln(1 + f c) - ln(1 + g c)|", "Sztrajman et al. 2021", false},
-     [](const Sample& s) {
-         return std::abs(std::log1p(s.f * s.c) - std::log1p(s.clamped() * s.c));
-     },
+     [](const Sample& s) { return std::abs(s.growth); },
      nullptr,
-     identity},
+     identity,
+     Shared::growth},
     {{"cube-root", "root mean square of (g c + 1e-6)^(1/3) - (f c + 1e-6)^(1/3)", "", false},
      [](const Sample& s) {
          return square(std::cbrt(s.clamped() * s.c + rootOffset) -
@@ -91,11 +96,10 @@ const Formula formulas[] = {
      squareRoot},
     {{"log-rms", "root mean square of ln((f c + 1e-3) / (g c + 1e-3))",
       "Nielsen, Jensen & Ramamoorthi 2015", false},
-     [](const Sample& s) {
-         return square(std::log((s.f * s.c + logOffset) / (s.clamped() * s.c + logOffset)));
-     },
+     [](const Sample& s) { return square(s.logRatio); },
      nullptr,
-     squareRoot},
+     squareRoot,
+     Shared::logRatio},
     {{"negativity", "integral of max(-g c, 0) over that of f c", "", false},
      [](const Sample& s) { return std::max(-s.g * s.c, 0.0); },
      [](const Sample& s) { return s.f * s.c; },
@@ -122,6 +126,37 @@ struct Sums {
     double maximum = -1;
     Direction maximumWi, maximumWo;
     double albedoDifference = 0;
+};
+
+/// The formulas of the metrics that are asked for.
+class Asked {
+public:
+    explicit Asked(std::span<const Metric* const> metrics) {
+        for (const Metric* metric : metrics) {
+            const auto m = static_cast<std::size_t>(metric - metricCatalog().data());
+            if (!formulas[m].term) continue;
+            terms_.push_back(m);
+            logRatio_ |= formulas[m].shared == Shared::logRatio;
+            growth_ |= formulas[m].shared == Shared::growth;
+        }
+    }
+    void add(Sample sample, double weight, Sums& sums) const {
+        if (logRatio_)
+            sample.logRatio = std::log((sample.f * sample.c + logOffset) /
+                                       (sample.clamped() * sample.c + logOffset));
+        if (growth_)
+            sample.growth =
+                std::log1p(sample.clamped() * sample.c) - std::log1p(sample.f * sample.c);
+        sums.weight += weight;
+        for (const std::size_t m : terms_) {
+            sums.term[m] += weight * formulas[m].term(sample);
+            if (formulas[m].scale) sums.scale[m] += weight * formulas[m].scale(sample);
+        }
+    }
+
+private:
+    std::vector<std::size_t> terms_ = {};
+    bool logRatio_ = false, growth_ = false;
 };
 
 /// Values of all channels of f and g at a batch; a grey one is repeated.
@@ -155,7 +190,8 @@ private:
     const Brdf &f_, &g_;
 };
 
-Sums sumOver(const PairEvaluator& pair, const Direction& wo, const HemisphereGrid& grid) {
+Sums sumOver(const PairEvaluator& pair, const Asked& asked, const Direction& wo,
+             const HemisphereGrid& grid) {
     Sums sums;
     std::vector<double> f, g;
     std::vector<double> albedo(pair.channels, 0.0);
@@ -169,13 +205,7 @@ Sums sumOver(const PairEvaluator& pair, const Direction& wo, const HemisphereGri
             for (std::size_t k = 0; k < f.size(); ++k) {
                 const std::size_t j = k % points.count();
                 const double weight = points.weight(j);
-                const Sample sample{f[k], g[k], mu};
-                sums.weight += weight;
-                for (std::size_t m = 0; m < formulaCount; ++m) {
-                    if (!formulas[m].term) continue;
-                    sums.term[m] += weight * formulas[m].term(sample);
-                    if (formulas[m].scale) sums.scale[m] += weight * formulas[m].scale(sample);
-                }
+                asked.add({f[k], g[k], mu}, weight, sums);
                 albedo[k / points.count()] += weight * mu * (g[k] - f[k]);
                 if (const double error = std::abs(g[k] - f[k]) * mu; error > sums.maximum) {
                     sums.maximum = error;
@@ -217,7 +247,7 @@ struct LevelValues {
     Direction maximumWi, maximumWo, albedoWo;
 };
 
-LevelValues valuesAt(const Brdf& f, const Brdf& g, const PairEvaluator& pair,
+LevelValues valuesAt(const Brdf& f, const Brdf& g, const PairEvaluator& pair, const Asked& asked,
                      const OutgoingSet& outgoing, int level,
                      const std::function<void()>& progress) {
     std::vector<Sums> perDirection(outgoing.size());
@@ -227,8 +257,9 @@ LevelValues valuesAt(const Brdf& f, const Brdf& g, const PairEvaluator& pair,
             std::vector<Lobe> lobes = f.lobes(wo);
             const std::vector<Lobe> others = g.lobes(wo);
             lobes.insert(lobes.end(), others.begin(), others.end());
-            perDirection[k] = sumOver(
-                pair, wo, gridFor(lobes, wo, {.order = 24, .level = level, .squeezed = true}));
+            perDirection[k] =
+                sumOver(pair, asked, wo,
+                        gridFor(lobes, wo, {.order = 24, .level = level, .squeezed = true}));
         }
         progress();
     });
@@ -329,14 +360,15 @@ std::vector<MetricValue> compare(const Brdf& f, const Brdf& g, const OutgoingSet
                                  std::span<const Metric* const> metrics,
                                  const CompareOptions& options) {
     const PairEvaluator pair(f, g);
+    const Asked asked(metrics);
     const std::string noSquares = whyNoSquares(f, g, outgoing, options);
     std::atomic<std::size_t> done = 0;
     const auto progress = [&] {
         const std::size_t now = ++done;
         if (options.progress) options.progress(now, 2 * outgoing.size());
     };
-    const LevelValues coarse = valuesAt(f, g, pair, outgoing, options.level - 1, progress);
-    const LevelValues fine = valuesAt(f, g, pair, outgoing, options.level, progress);
+    const LevelValues coarse = valuesAt(f, g, pair, asked, outgoing, options.level - 1, progress);
+    const LevelValues fine = valuesAt(f, g, pair, asked, outgoing, options.level, progress);
     f.checkIntact();
     g.checkIntact();
 
@@ -366,15 +398,10 @@ std::vector<MetricValue> compareSamples(std::span<const double> f, std::span<con
                                         std::span<const double> cosines,
                                         std::span<const double> weights) {
     Sums sums;
+    const Asked asked(selectMetrics("all"));
     for (std::size_t k = 0; k < f.size(); ++k) {
         const std::size_t at = k % cosines.size();
-        const Sample sample{f[k], g[k], cosines[at]};
-        sums.weight += weights[at];
-        for (std::size_t m = 0; m < formulaCount; ++m) {
-            if (!formulas[m].term) continue;
-            sums.term[m] += weights[at] * formulas[m].term(sample);
-            if (formulas[m].scale) sums.scale[m] += weights[at] * formulas[m].scale(sample);
-        }
+        asked.add({f[k], g[k], cosines[at]}, weights[at], sums);
         sums.maximum = std::max(sums.maximum, std::abs(g[k] - f[k]) * cosines[at]);
     }
     std::vector<MetricValue> results;

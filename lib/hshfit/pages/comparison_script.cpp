@@ -76,6 +76,23 @@ data polarPanels(const Comparison& comparison) {
     return panels;
 }
 
+/// Sets the place of each curve in its file: rows from 0 without the header.
+void setRows(data& fields, const std::string& file, const std::vector<ComparisonCurve>& curves) {
+    data rows{data::type::list};
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+        const std::size_t next = first + curves[i].angles.size();
+        data row;
+        row.set("index", std::to_string(i + 1));
+        row.set("first", std::to_string(first));
+        row.set("last", std::to_string(next - 1));
+        rows.push_back(row);
+        first = next;
+    }
+    fields.set(file + "Rows", rows);
+    fields.set(file + "Count", std::to_string(curves.size()));
+}
+
 std::array<int, 2> halfDecades(const Comparison& comparison) {
     double least = HUGE_VAL, most = 0;
     for (const ComparisonCurve& curve : comparison.half) {
@@ -134,6 +151,9 @@ std::string comparisonScript(const Comparison& comparison) {
     fields.set("panels", polarPanels(comparison));
     fields.set("panelCount", std::to_string(comparison.polar.size()));
     fields.set("slices", std::to_string(comparison.polar.size() / comparison.residuals.size()));
+    setRows(fields, "polar", comparison.polar);
+    setRows(fields, "half", comparison.half);
+    setRows(fields, "albedo", comparison.albedo);
     const auto half = halfDecades(comparison);
     fields.set("halfLow", std::to_string(half[0]));
     fields.set("halfHigh", std::to_string(half[1]));

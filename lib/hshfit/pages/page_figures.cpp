@@ -1,5 +1,7 @@
 #include <hshfit/pages/page_figures.h>
 
+#include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <iterator>
 #include <regex>
@@ -36,6 +38,34 @@ std::string columnsOf(const std::string& tag, std::span<const int> columns,
     return parts;
 }
 
+/// Elements `<title>` that hold text alone.
+void removeTitles(std::string& svg) {
+    constexpr std::string_view open = "<title>", close = "</title>";
+    for (std::size_t at = 0; (at = svg.find(open, at)) != svg.npos;) {
+        const std::size_t end = svg.find('<', at + open.size());
+        if (end != svg.npos && svg.compare(end, close.size(), close) == 0)
+            svg.erase(at, end + close.size() - at);
+        else
+            at += open.size();
+    }
+}
+
+/// The text with `own` after each mark whose next character is accepted.
+template <class Accept>
+std::string withAfter(const std::string& text, std::string_view mark, const std::string& own,
+                      const Accept& accept) {
+    std::string result;
+    std::size_t done = 0;
+    for (std::size_t at = 0; (at = text.find(mark, at)) != text.npos;) {
+        at += mark.size();
+        if (at == text.size() || !accept(static_cast<unsigned char>(text[at]))) continue;
+        result.append(text, done, at - done);
+        result += own;
+        done = at;
+    }
+    return result.append(text, done);
+}
+
 }  // namespace
 
 std::string inlinedFigure(std::string svg, std::size_t index, std::span<const int> columns) {
@@ -46,10 +76,12 @@ std::string inlinedFigure(std::string svg, std::size_t index, std::span<const in
                                          std::regex(R"re(\s(width|height)="[\d.]+(mm)?")re"), "");
     tag = std::regex_replace(tag, std::regex("<svg"), "<svg role=\"img\"");
     svg = tag + svg.substr(end);
-    svg = std::regex_replace(svg, std::regex("<title>[^<]*</title>"), "");
+    removeTitles(svg);
     const std::string own = fmt::format("f{}-", index);
-    svg = std::regex_replace(svg, std::regex(R"re(( id=["'])(?=[A-Za-z]))re"), "$1" + own);
-    svg = std::regex_replace(svg, std::regex(R"re((href=["']#|url\(#))re"), "$1" + own);
+    const auto isLetter = [](unsigned char c) { return std::isalpha(c) != 0; };
+    for (const char* mark : {" id=\"", " id='"}) svg = withAfter(svg, mark, own, isLetter);
+    for (const char* mark : {"href=\"#", "href='#", "url(#"})
+        svg = withAfter(svg, mark, own, [](unsigned char) { return true; });
     const std::size_t last = svg.rfind("</svg>"), first = svg.find('>') + 1;
     if (columns.size() < 2 || last == svg.npos || first > last) return svg;
     const std::string parts = columnsOf(tag, columns, own + "whole");

@@ -3,9 +3,11 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <utility>
 
 namespace hshfit::inline pictures {
 namespace {
@@ -20,14 +22,35 @@ struct Frame {
     }
 };
 
-/// The frame at the point (x, y) of the unit disc.
-Frame frameAt(double x, double y) {
-    const double z = std::sqrt(1 - x * x - y * y);
-    const Direction n{x, y, z};
-    const double length = std::hypot(z, x);
-    const Direction t = length > 0 ? Direction{z / length, 0, -x / length} : Direction{1, 0, 0};
+/// A point of the unit disc.
+struct Place {
+    double x, y;
+};
+
+/// The frame at a point, with the tangent along the parallel.
+Frame frameAlongParallel(const Place& at) {
+    const double z = std::sqrt(1 - at.x * at.x - at.y * at.y);
+    const Direction n{at.x, at.y, z};
+    const double length = std::hypot(z, at.x);
+    const Direction t = length > 0 ? Direction{z / length, 0, -at.x / length} : Direction{1, 0, 0};
     return {t, {n.y * t.z - n.z * t.y, n.z * t.x - n.x * t.z, n.x * t.y - n.y * t.x}, n};
 }
+
+/// The frame at a point, with the viewer in the plane of tangent and normal: points at one distance
+/// from the middle see the viewer in one direction.
+Frame frameTowardsViewer(const Place& at) {
+    const double square = at.x * at.x + at.y * at.y, r = std::sqrt(square);
+    if (r == 0) return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const double x = at.x / r, y = at.y / r, z = std::sqrt(std::max(0.0, 1 - square));
+    return {{-z * x, -z * y, r}, {y, -x, 0}, {at.x, at.y, z}};
+}
+
+/// Points that see the viewer in one direction, each with the sum of its pixel.
+struct Points {
+    std::vector<Place> places = {};
+    std::vector<Rgb> sums = {};
+    std::size_t notFinite = 0;
+};
 
 class Shader {
 public:
@@ -40,38 +63,58 @@ public:
           channels_(brdf.channels().count()) {}
 
     const std::string& colours() const { return colour_.what(); }
+    bool isotropic() const { return brdf_.laws().isotropic; }
 
-    /// Adds the radiance that the point (x, y) of the unit disc sends to the viewer.
-    void add(double x, double y, Rgb& sum, std::size_t& notFinite) const {
-        const Frame frame = frameAt(x, y);
-        const Direction wo = frame.local({0, 0, 1});
-        std::vector<double> wx, wy, wz, weight, f;
-        for (const SphereLight& light : rig_.lights) {
-            const Direction wi = frame.local(light.towards);
-            if (wi.z <= 0) continue;
-            wx.push_back(wi.x);
-            wy.push_back(wi.y);
-            wz.push_back(wi.z);
-            weight.push_back(pi * light.strength * wi.z);
-        }
-        f.resize(std::max<std::size_t>(1, wx.size()) * channels_);
-        if (!wx.empty()) brdf_.eval(wo, {wx.data(), wy.data(), wz.data(), wx.size()}, f.data());
-        for (std::size_t k = 0; k < wx.size(); ++k) {
-            addFinite(colour_(f.data() + k, wx.size()), weight[k], sum, notFinite);
-        }
+    /// Directions to the lights that are above points.
+    struct Lit {
+        std::vector<double> x = {}, y = {}, z = {}, weight = {}, f = {};
+        std::vector<std::size_t> point = {};
+    };
+
+    /// Adds the radiance that each point sends to the viewer. `lit` is memory to work in.
+    void add(Points& points, Lit& lit) const {
+        const Direction wo = frameAt(points.places[0]).local({0, 0, 1});
+        findLights(points, lit);
+        const std::size_t count = lit.x.size();
+        lit.f.resize(std::max<std::size_t>(1, count) * channels_);
+        if (count > 0)
+            brdf_.eval(wo, {lit.x.data(), lit.y.data(), lit.z.data(), count}, lit.f.data());
+        for (std::size_t k = 0; k < count; ++k)
+            addFinite(colour_(lit.f.data() + k, count), lit.weight[k], lit.point[k], points);
         if (rig_.dome == 0) return;
-        f.resize(channels_);
-        albedo_->at(wo, f);
-        addFinite(colour_(f.data(), 1), rig_.dome, sum, notFinite);
+        lit.f.resize(channels_);
+        albedo_->at(wo, lit.f);
+        const Rgb dome = colour_(lit.f.data(), 1);
+        for (std::size_t p = 0; p < points.places.size(); ++p)
+            addFinite(dome, rig_.dome, p, points);
     }
 
 private:
-    static void addFinite(const Rgb& value, double weight, Rgb& sum, std::size_t& notFinite) {
+    Frame frameAt(const Place& at) const {
+        return isotropic() ? frameTowardsViewer(at) : frameAlongParallel(at);
+    }
+    void findLights(const Points& points, Lit& lit) const {
+        for (auto* values : {&lit.x, &lit.y, &lit.z, &lit.weight}) values->clear();
+        lit.point.clear();
+        for (std::size_t p = 0; p < points.places.size(); ++p) {
+            const Frame frame = frameAt(points.places[p]);
+            for (const SphereLight& light : rig_.lights) {
+                const Direction wi = frame.local(light.towards);
+                if (wi.z <= 0) continue;
+                lit.x.push_back(wi.x);
+                lit.y.push_back(wi.y);
+                lit.z.push_back(wi.z);
+                lit.weight.push_back(pi * light.strength * wi.z);
+                lit.point.push_back(p);
+            }
+        }
+    }
+    static void addFinite(const Rgb& value, double weight, std::size_t point, Points& points) {
         for (std::size_t c = 0; c < 3; ++c) {
             if (std::isfinite(value[c])) {
-                sum[c] += weight * value[c];
+                points.sums[point][c] += weight * value[c];
             } else {
-                ++notFinite;
+                ++points.notFinite;
             }
         }
     }
@@ -83,6 +126,91 @@ private:
     std::size_t channels_;
 };
 
+struct Cell {
+    std::size_t row, column;
+    bool operator==(const Cell&) const = default;
+};
+
+/// A cell of a square of `size` cells along an edge, mirrored across and down, and with its axes
+/// exchanged, by the bits of `symmetry`.
+Cell moved(Cell cell, std::size_t symmetry, std::size_t size) {
+    if (symmetry & 4) std::swap(cell.row, cell.column);
+    if (symmetry & 2) cell.row = size - 1 - cell.row;
+    if (symmetry & 1) cell.column = size - 1 - cell.column;
+    return cell;
+}
+
+/// Draws pixels of a picture together with those onto which symmetries of the sphere take them.
+class Painter {
+public:
+    Painter(const Shader& shader, const SphereOptions& options, SpherePicture& picture)
+        : shader_(shader),
+          size_(static_cast<std::size_t>(options.size)),
+          samples_(static_cast<std::size_t>(options.samples)),
+          symmetries_(shader.isotropic() ? 8 : 1),
+          picture_(picture) {}
+
+    /// Rows of pixels that stand for all.
+    std::size_t rows() const { return symmetries_ > 1 ? (size_ + 1) / 2 : size_; }
+
+    /// Draws what one of these rows stands for; values of f that were left out.
+    std::size_t draw(std::size_t row) {
+        const std::size_t columns = symmetries_ > 1 ? row + 1 : size_;
+        for (std::size_t column = 0; column < columns; ++column) drawAlike({row, column});
+        return points_.notFinite;
+    }
+
+private:
+    void drawAlike(Cell first) {
+        std::vector<Cell>& pixels = pixels_;
+        pixels.clear();
+        symmetriesOfPixels_.clear();
+        for (std::size_t symmetry = 0; symmetry < symmetries_; ++symmetry) {
+            const Cell pixel = moved(first, symmetry, size_);
+            if (std::ranges::find(pixels, pixel) != pixels.end()) continue;
+            pixels.push_back(pixel);
+            symmetriesOfPixels_.push_back(symmetry);
+        }
+        points_.sums.assign(pixels.size(), Rgb{});
+        points_.places.resize(pixels.size());
+        double covered = 0;
+        for (std::size_t i = 0; i < samples_ * samples_; ++i) {
+            const Cell sample{first.row * samples_ + i / samples_,
+                              first.column * samples_ + i % samples_};
+            for (std::size_t p = 0; p < pixels.size(); ++p)
+                points_.places[p] =
+                    placeOf(moved(sample, symmetriesOfPixels_[p], size_ * samples_));
+            const auto [x, y] = points_.places[0];
+            if (x * x + y * y >= 1) continue;
+            shader_.add(points_, lit_);
+            ++covered;
+        }
+        for (std::size_t p = 0; p < pixels.size(); ++p) put(pixels[p], points_.sums[p], covered);
+    }
+    /// Exactly symmetric about the middle.
+    Place placeOf(const Cell& sample) const {
+        const auto count = static_cast<double>(size_ * samples_);
+        const double scale = 2 / (count * sphereRadius);
+        return {scale * (static_cast<double>(sample.column) + 0.5 - count / 2),
+                scale * (count / 2 - static_cast<double>(sample.row) - 0.5)};
+    }
+    void put(const Cell& cell, const Rgb& sum, double covered) {
+        const std::size_t pixel = cell.row * size_ + cell.column;
+        picture_.coverage[pixel] =
+            static_cast<float>(covered / static_cast<double>(samples_ * samples_));
+        for (std::size_t c = 0; c < 3 && covered > 0; ++c)
+            picture_.radiance[3 * pixel + c] = static_cast<float>(sum[c] / covered);
+    }
+
+    const Shader& shader_;
+    std::size_t size_, samples_, symmetries_;
+    SpherePicture& picture_;
+    Points points_ = {};
+    Shader::Lit lit_ = {};
+    std::vector<Cell> pixels_ = {};
+    std::vector<std::size_t> symmetriesOfPixels_ = {};
+};
+
 SpherePicture render(const Brdf& brdf, const AlbedoTable* albedo, const SphereOptions& options) {
     const Shader shader(brdf, albedo, options.rig);
     const auto size = static_cast<std::size_t>(options.size);
@@ -91,29 +219,12 @@ SpherePicture render(const Brdf& brdf, const AlbedoTable* albedo, const SphereOp
                           .coverage = std::vector<float>(size * size),
                           .colours = shader.colours(),
                           .notFinite = albedo ? albedo->notFinite() : 0};
-    std::vector<std::size_t> notFinite(size);
+    const std::size_t rows = Painter(shader, options, picture).rows();
+    std::vector<std::size_t> notFinite(rows);
     std::atomic<std::size_t> done = 0;
-    const double samples = options.samples, scale = 2 / (options.size * sphereRadius);
-    tbb::parallel_for(std::size_t{0}, size, [&](std::size_t row) {
-        for (std::size_t column = 0; column < size; ++column) {
-            Rgb sum{};
-            double covered = 0;
-            for (int i = 0; i < options.samples * options.samples; ++i) {
-                const double across = (i % options.samples + 0.5) / samples;
-                const double down = (i / options.samples + 0.5) / samples;
-                const double x = scale * (static_cast<double>(column) + across) - 1 / sphereRadius;
-                const double y = 1 / sphereRadius - scale * (static_cast<double>(row) + down);
-                if (x * x + y * y >= 1) continue;
-                shader.add(x, y, sum, notFinite[row]);
-                ++covered;
-            }
-            const std::size_t pixel = row * size + column;
-            picture.coverage[pixel] = static_cast<float>(covered / (samples * samples));
-            for (std::size_t c = 0; c < 3 && covered > 0; ++c) {
-                picture.radiance[3 * pixel + c] = static_cast<float>(sum[c] / covered);
-            }
-        }
-        if (options.progress) options.progress(++done, size);
+    tbb::parallel_for(std::size_t{0}, rows, [&](std::size_t row) {
+        notFinite[row] = Painter(shader, options, picture).draw(row);
+        if (options.progress) options.progress(++done, rows);
     });
     for (const std::size_t count : notFinite) picture.notFinite += count;
     return picture;

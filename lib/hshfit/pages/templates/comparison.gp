@@ -33,6 +33,23 @@ slice[{{index}}] = {{slice}}; top[{{index}}] = {{top}}; low[{{index}}] = {{low}}
 {{/panels}}
 slices = {{slices}}
 
+# First and last rows of each curve in its file.
+array polarFirst[{{polarCount}}]
+array polarLast[{{polarCount}}]
+{{#polarRows}}
+polarFirst[{{index}}] = {{first}}; polarLast[{{index}}] = {{last}}
+{{/polarRows}}
+array halfFirst[{{halfCount}}]
+array halfLast[{{halfCount}}]
+{{#halfRows}}
+halfFirst[{{index}}] = {{first}}; halfLast[{{index}}] = {{last}}
+{{/halfRows}}
+array albedoFirst[{{albedoCount}}]
+array albedoLast[{{albedoCount}}]
+{{#albedoRows}}
+albedoFirst[{{index}}] = {{first}}; albedoLast[{{index}}] = {{last}}
+{{/albedoRows}}
+
 radius(f, p, logarithmic) = logarithmic ? \
     (f <= 10.0**low[p] ? NaN : f >= 10.0**high[p] ? 1 : (log10(f) - low[p]) / (high[p] - low[p])) : \
     (f <= 0 ? NaN : f >= top[p] ? 1 : f / top[p])
@@ -41,7 +58,6 @@ y(f, p, logarithmic) = radius(f, p, logarithmic) * cos(column(3) * pi / 180)
 # '+' runs over the range of x, which becomes a half turn.
 ringX(t) = sin(t / 1.12 * pi / 2)
 ringY(t) = cos(t / 1.12 * pi / 2)
-at(azimuth, fixed) = column(1) == azimuth && column(2) == fixed
 
 font = 'DejaVu Sans,Helvetica,Arial,sans-serif'
 soft = '#8a929c'
@@ -98,11 +114,11 @@ do for [row = 1:slices] {
         plot for [ring = 1:rings] '+' \
                 using (ringX($1) * ring / rings):(ringY($1) * ring / rings) \
                 with lines linecolor rgb '#c8c8c8' linewidth 0.5 dashtype 1, \
-             for [k = 1:channels] polarCsv skip 1 \
-                using (at({{azimuth}}, slice[p]) ? x(column(2 * k + 2), p, logarithmic) : NaN): \
+             for [k = 1:channels] polarCsv skip 1 every ::polarFirst[p]::polarLast[p] \
+                using (x(column(2 * k + 2), p, logarithmic)): \
                       (y(column(2 * k + 2), p, logarithmic)) with lines linetype 2 * k - 1, \
-             for [k = 1:channels] polarCsv skip 1 \
-                using (at({{azimuth}}, slice[p]) ? x(column(2 * k + 3), p, logarithmic) : NaN): \
+             for [k = 1:channels] polarCsv skip 1 every ::polarFirst[p]::polarLast[p] \
+                using (x(column(2 * k + 3), p, logarithmic)): \
                       (y(column(2 * k + 3), p, logarithmic)) with lines linetype 2 * k
     }
 }
@@ -134,12 +150,13 @@ do for [panel = 0:5] {
     set xlabel panel >= 2 ? 'θh' : ''
     if (panel < 5) {
         unset key
+        h = {{place}} * 5 + panel + 1
         set label 1 sprintf('θd = %d°', 20 * panel) at graph 0.97, graph 0.95 right
-        plot for [k = 1:channels] halfCsv skip 1 \
-                using (at({{azimuth}}, 20 * panel) ? sqrt(column(3) / 90) : NaN):(column(2 * k + 2)) \
+        plot for [k = 1:channels] halfCsv skip 1 every ::halfFirst[h]::halfLast[h] \
+                using (sqrt(column(3) / 90)):(column(2 * k + 2)) \
                 with lines linetype 2 * k - 1, \
-             for [k = 1:channels] halfCsv skip 1 \
-                using (at({{azimuth}}, 20 * panel) ? sqrt(column(3) / 90) : NaN):(column(2 * k + 3)) \
+             for [k = 1:channels] halfCsv skip 1 every ::halfFirst[h]::halfLast[h] \
+                using (sqrt(column(3) / 90)):(column(2 * k + 3)) \
                 with lines linetype 2 * k
     } else {
         unset label 1
@@ -210,11 +227,12 @@ set format y '%g'
 set xlabel 'θo'
 unset ylabel
 set label 1 'directional albedo' at graph 0, screen 0.965 left
-plot for [k = 1:channels] albedoCsv skip 1 \
-        using (column(1) == {{azimuth}} ? column(2) : NaN):(column(2 * k + 1)) \
+a = {{place}} + 1
+plot for [k = 1:channels] albedoCsv skip 1 every ::albedoFirst[a]::albedoLast[a] \
+        using (column(2)):(column(2 * k + 1)) \
         with lines linetype 2 * k - 1, \
-     for [k = 1:channels] albedoCsv skip 1 \
-        using (column(1) == {{azimuth}} ? column(2) : NaN):(column(2 * k + 2)) \
+     for [k = 1:channels] albedoCsv skip 1 every ::albedoFirst[a]::albedoLast[a] \
+        using (column(2)):(column(2 * k + 2)) \
         with lines linetype 2 * k
 unset label 1
 set xtics format '%g'

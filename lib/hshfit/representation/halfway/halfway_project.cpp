@@ -141,10 +141,11 @@ Representation projectHalfway(const Brdf& brdf, const HalfwayOrders& asked,
     const HalfwayModel model{terms, axes, floor};
     const HalfwaySamples few = thinned(samples, 8 * std::max(terms.size(), lobePairs / 8), false);
     const auto stepDone = [&] { steps.done(); };
-    HalfwayValues values = descended(model, {few, nullptr, fineHuber},
-                                     startFrom(found, model, few, symmetry), roughSteps, stepDone);
-    values =
-        descended(model, {samples, &albedo, fineHuber}, std::move(values), fineSteps, stepDone);
+    HalfwayErrors rough(model, {few, nullptr, fineHuber}),
+        fine(model, {samples, &albedo, fineHuber});
+    const HalfwayValues values = descended(
+        fine, descended(rough, startFrom(found, model, few, symmetry), roughSteps, stepDone),
+        fineSteps, stepDone);
     content.halfway = {.shape = {r.head.channels.count(), terms.size()}, .values = {}};
     content.halfway.values.assign(values.data(), values.data() + values.size());
     content.ceilings = halfwayCeilings(model, samples, values);

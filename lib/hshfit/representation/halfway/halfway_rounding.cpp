@@ -107,8 +107,9 @@ void quantiseHalfway(Representation& representation, Precision precision, const 
                   halfwayPairsFor(terms, representation.head.isotropic), samples);
     const HalfwayAlbedo albedo = albedoOf(brdf, representation.head.reciprocal);
     const HalfwayModel model{terms, axes, halfwayFloor(albedo)};
-    const HalfwayData data{samples, &albedo, fineHuber};
-    const std::vector<HalfwaySystem> systems = halfwaySystems(model, data, values);
+    HalfwayErrors errors(model, {samples, &albedo, fineHuber});
+    errors.losses(values);
+    const std::vector<HalfwaySystem> systems = errors.systems(std::vector<bool>(channels, true));
     std::vector<double> found(fitted.size()), tried(fitted.size());
     std::vector<double> least(channels, std::numeric_limits<double>::infinity());
     for (const double regularisation : regularisations) {
@@ -117,12 +118,11 @@ void quantiseHalfway(Representation& representation, Precision precision, const 
             roundChannel(systems[c].gram, regularisation, fitted.data() + first, rounded, first,
                          tried.data() + first);
         }
-        const auto losses = halfwaySystems(
-            model, data,
+        const auto losses = errors.losses(
             Eigen::Map<const HalfwayValues>(tried.data(), values.rows(), values.cols()));
         for (std::size_t c = 0; c < channels; ++c) {
-            if (!(losses[c].loss < least[c])) continue;
-            least[c] = losses[c].loss;
+            if (!(losses[c] < least[c])) continue;
+            least[c] = losses[c];
             const auto first = static_cast<std::ptrdiff_t>(c * terms.size());
             std::copy_n(tried.begin() + first, terms.size(), found.begin() + first);
         }

@@ -97,28 +97,40 @@ HalfwayAlbedo albedoOf(const Brdf& brdf, bool reciprocal) {
     return albedo;
 }
 
-void addAlbedo(const HalfwayModel& model, const HalfwayAlbedo& albedo, const HalfwayValues& values,
-               std::vector<HalfwaySystem>& systems) {
+HalfwayAlbedoErrors::HalfwayAlbedoErrors(const HalfwayModel& model, const HalfwayAlbedo& albedo,
+                                         const HalfwayValues& values)
+    : albedo_(albedo), sums_(albedo.targets.size(), 0.0), slopes_(albedo.strata()) {
     const std::size_t channels = albedo.channels();
-    std::vector<double> sums(albedo.targets.size(), 0.0);
-    std::vector<HalfwayValues> slopes(albedo.strata());
     tbb::parallel_for(std::size_t{0}, albedo.strata(), [&](std::size_t s) {
-        slopes[s] = HalfwayValues::Zero(values.rows(), values.cols());
-        sumStratum(model, albedo, values, s, sums.data() + s * channels, slopes[s]);
+        slopes_[s] = HalfwayValues::Zero(values.rows(), values.cols());
+        sumStratum(model, albedo, values, s, sums_.data() + s * channels, slopes_[s]);
     });
-    for (std::size_t s = 0; s < albedo.strata(); ++s) {
-        if (albedo.pairs[albedo.first[s]].wo.z < leastCosine) continue;
-        for (std::size_t c = 0; c < channels; ++c) {
-            const double target = albedo.targets[s * channels + c];
-            if (!(target > 0)) continue;
-            const double relative = sums[s * channels + c] / target - 1;
-            const double weight = albedoWeight * albedo.shares[s];
-            const Eigen::VectorXd column = slopes[s].col(static_cast<Eigen::Index>(c)) / target;
-            systems[c].gram.noalias() += weight * column * column.transpose();
-            systems[c].slope += weight * relative * column;
-            systems[c].loss += weight * relative * relative / 2;
-        }
+}
+
+template <class Add>
+void HalfwayAlbedoErrors::forEachStratum(std::size_t channel, const Add& add) const {
+    for (std::size_t s = 0; s < albedo_.strata(); ++s) {
+        if (albedo_.pairs[albedo_.first[s]].wo.z < leastCosine) continue;
+        const std::size_t place = s * albedo_.channels() + channel;
+        const double target = albedo_.targets[place];
+        if (target > 0) add(sums_[place] / target - 1, albedoWeight * albedo_.shares[s], s, target);
     }
+}
+
+double HalfwayAlbedoErrors::loss(std::size_t channel) const {
+    double sum = 0;
+    forEachStratum(channel, [&](double relative, double weight, std::size_t, double) {
+        sum += weight * relative * relative / 2;
+    });
+    return sum;
+}
+
+void HalfwayAlbedoErrors::addTo(std::size_t channel, HalfwaySystem& system) const {
+    forEachStratum(channel, [&](double relative, double weight, std::size_t s, double target) {
+        const Eigen::VectorXd column = slopes_[s].col(static_cast<Eigen::Index>(channel)) / target;
+        system.gram.noalias() += weight * column * column.transpose();
+        system.slope += weight * relative * column;
+    });
 }
 
 }  // namespace hshfit::inline representation::inline halfway

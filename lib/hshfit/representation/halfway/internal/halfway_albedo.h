@@ -24,9 +24,26 @@ struct HalfwayAlbedo {
 };
 HalfwayAlbedo albedoOf(const Brdf& brdf, bool reciprocal);
 
-/// Adds the squares of the relative errors of the albedos to the systems: the mean over strata
-/// to 85 degrees weighs ten times as much as a square of a logarithm.
-void addAlbedo(const HalfwayModel& model, const HalfwayAlbedo& albedo, const HalfwayValues& values,
-               std::vector<HalfwaySystem>& systems);
+/// The albedos of a form and their derivatives by its coefficients.
+class HalfwayAlbedoErrors {
+public:
+    HalfwayAlbedoErrors(const HalfwayModel& model, const HalfwayAlbedo& albedo,
+                        const HalfwayValues& values);
+
+    /// The squares of the relative errors of a channel: the mean over strata to 85 degrees weighs
+    /// ten times as much as a square of a logarithm.
+    double loss(std::size_t channel) const;
+    /// Adds the gradient and the matrix of these.
+    void addTo(std::size_t channel, HalfwaySystem& system) const;
+
+private:
+    /// Calls `add(relative error, weight, stratum, target)` for the strata that count.
+    template <class Add>
+    void forEachStratum(std::size_t channel, const Add& add) const;
+
+    const HalfwayAlbedo& albedo_;
+    std::vector<double> sums_;           ///< [stratum][channel]
+    std::vector<HalfwayValues> slopes_;  ///< [stratum], as coefficients
+};
 
 }  // namespace hshfit::inline representation::inline halfway

@@ -2,7 +2,6 @@
 
 #include <hshfit/error.h>
 #include <hshfit/representation/halfway/internal/halfway_albedo.h>
-#include <hshfit/representation/halfway/internal/halfway_gram.h>
 
 #include <tbb/parallel_for.h>
 #include <Eigen/Cholesky>
@@ -21,6 +20,8 @@ using Eigen::Index;
 constexpr std::size_t parts = 8;
 /// Samples whose terms are held at once: with a few hundred terms they stay in the cache.
 constexpr std::size_t chunk = 64;
+/// Terms of all pairs together that are held: 64 MiB.
+constexpr std::size_t mostHeld = std::size_t{1} << 23;
 /// The pull of coefficients to 0: what no sample sees stays small.
 constexpr double pull = 1e-6;
 /// Weights of the ways to draw pairs, by HalfwaySpread.
@@ -49,93 +50,43 @@ struct TwoParts {
 /// Evaluates the form of all channels at up to `chunk` pairs at a time.
 class Evaluation {
 public:
-    Evaluation(const HalfwayModel& model, const HalfwayValues& values)
-        : model_(model),
-          values_(values),
-          rows_((model.terms.size() + gramPadding - 1) / gramPadding * gramPadding) {}
+    Evaluation(const HalfwayModel& model, const HalfwayProducts& products,
+               const HalfwayValues& values)
+        : model_(model), products_(products), values_(values) {}
 
-    void at(const std::vector<DirectionPair>& pairs, std::size_t first, std::size_t count) {
-        products_.setZero(static_cast<Index>(rows_), static_cast<Index>(count));
-        weights_.resize(count);
-        for (std::size_t k = 0; k < count; ++k) {
-            const HalfwayPoint point = model_.axes.at(pairs[first + k].wi, pairs[first + k].wo);
-            weights_[k] = point.weight;
-            model_.terms.evaluate(point, products_.col(static_cast<Index>(k)).data());
-        }
+    void at(std::size_t first, std::size_t count) {
+        products_.find(first, count, columns_);
+        const Eigen::Map<const Eigen::MatrixXd> terms(
+            columns_.terms, static_cast<Index>(products_.rows()), static_cast<Index>(count));
         const auto smooth = static_cast<Index>(model_.terms.smooth());
         const Index rest = values_.rows() - smooth;
-        smooth_.noalias() = values_.topRows(smooth).transpose() * products_.topRows(smooth);
-        lobe_.noalias() = values_.bottomRows(rest).transpose() * products_.middleRows(smooth, rest);
+        smooth_.noalias() = values_.topRows(smooth).transpose() * terms.topRows(smooth);
+        lobe_.noalias() = values_.bottomRows(rest).transpose() * terms.middleRows(smooth, rest);
     }
     /// The two parts at the k-th pair.
     TwoParts parts(std::size_t k, Index channel) const {
         const auto at = static_cast<Index>(k);
         return {std::exp(std::min(smooth_(channel, at), greatestExponent)),
-                weights_[k] * std::exp(std::min(lobe_(channel, at), greatestExponent))};
+                columns_.weights[k] * std::exp(std::min(lobe_(channel, at), greatestExponent))};
     }
     TwoParts exponents(std::size_t k, Index channel) const {
         const auto at = static_cast<Index>(k);
         return {smooth_(channel, at), lobe_(channel, at)};
     }
-    /// The derivatives of f by the coefficients, times `factor`, into a column of the padded terms.
-    void derivatives(std::size_t k, const TwoParts& parts, double factor, double* out) const {
-        const double* from = products_.col(static_cast<Index>(k)).data();
-        const std::size_t smooth = model_.terms.smooth();
-        for (std::size_t t = 0; t < smooth; ++t) out[t] = factor * parts.smooth * from[t];
-        for (std::size_t t = smooth; t < rows_; ++t) out[t] = factor * parts.lobe * from[t];
-    }
-    std::size_t rows() const { return rows_; }
 
 private:
     const HalfwayModel& model_;
+    const HalfwayProducts& products_;
     const HalfwayValues& values_;
-    std::size_t rows_;
-    Eigen::MatrixXd products_, smooth_, lobe_;
-    std::vector<double> weights_;
+    HalfwayProducts::Columns columns_ = {};
+    Eigen::MatrixXd smooth_, lobe_;
 };
-
-/// Adds samples `first` .. `last` - 1 to the systems, whose matrices are padded.
-void addSamples(const HalfwayModel& model, const HalfwayData& data, const HalfwayValues& values,
-                std::size_t first, std::size_t last, std::vector<HalfwaySystem>& systems) {
-    const HalfwaySamples& samples = data.samples;
-    const std::size_t channels = samples.channels();
-    Evaluation form(model, values);
-    const auto rows = static_cast<Index>(form.rows());
-    systems.assign(channels, {Eigen::MatrixXd::Zero(rows, rows), Eigen::VectorXd::Zero(rows), 0.0});
-    Eigen::MatrixXd slopes(rows, static_cast<Index>(chunk)),
-        scaled(rows, static_cast<Index>(chunk));
-    std::vector<double> weights(chunk);
-    Eigen::VectorXd errors(static_cast<Index>(chunk));
-    for (; first < last; first += chunk) {
-        const std::size_t count = std::min(chunk, last - first);
-        form.at(samples.pairs, first, count);
-        for (std::size_t c = 0; c < channels; ++c) {
-            HalfwaySystem& system = systems[c];
-            for (std::size_t k = 0; k < count; ++k) {
-                const TwoParts parts = form.parts(k, static_cast<Index>(c));
-                const double now = parts.smooth + parts.lobe + model.floor;
-                const double wanted = samples.values[(first + k) * channels + c] + model.floor;
-                const double error = std::log(now / wanted);
-                const double weight = weightOf(samples.spread[first + k]);
-                system.loss += weight * huberOf(error, data.huber);
-                weights[k] = weight * std::min(1.0, data.huber / std::max(std::abs(error), 1e-300));
-                errors[static_cast<Index>(k)] = weights[k] * error;
-                form.derivatives(k, parts, 1 / now, slopes.col(static_cast<Index>(k)).data());
-            }
-            // Row-major for the one is column-major for the other: its lower triangle is our upper.
-            addWeightedGram(slopes.data(), weights.data(), count, form.rows(), scaled.data(),
-                            system.gram.data());
-            const auto n = static_cast<Index>(count);
-            system.slope.noalias() += slopes.leftCols(n) * errors.head(n);
-        }
-    }
-}
 
 /// One channel on its way down.
 struct Descent {
     Eigen::VectorXd values;
-    HalfwaySystem system;
-    double damping = 1e-2;
+    HalfwaySystem system = {};
+    double loss = 0, damping = 1e-2;
     bool done = false;
 
     Eigen::VectorXd next() const {
@@ -146,49 +97,161 @@ struct Descent {
         const Eigen::LDLT<Eigen::MatrixXd> factor(matrix);
         return values - factor.solve(system.slope + pull * values);
     }
-    double penalised(const HalfwaySystem& of, const Eigen::VectorXd& at) const {
-        return of.loss + pull / 2 * at.squaredNorm();
-    }
-    void judge(Eigen::VectorXd tried, HalfwaySystem found) {
+    /// Whether the values tried take the place of those before.
+    bool judge(Eigen::VectorXd tried, double found) {
         constexpr double settled = 5e-4, hopeless = 1e6;
-        const double before = penalised(system, values), now = penalised(found, tried);
+        const auto penalised = [](double of, const Eigen::VectorXd& at) {
+            return of + pull / 2 * at.squaredNorm();
+        };
+        const double before = penalised(loss, values), now = penalised(found, tried);
         if (!(now < before)) {
             damping *= 8;
             done = damping > hopeless;
-            return;
+            return false;
         }
         done = now > before * (1 - settled) && damping < 1;
         damping = std::max(damping / 5, 1e-7);
         values = std::move(tried);
-        system = std::move(found);
+        loss = found;
+        return true;
     }
 };
 
 }  // namespace
 
-std::vector<HalfwaySystem> halfwaySystems(const HalfwayModel& model, const HalfwayData& data,
-                                          const HalfwayValues& values) {
+HalfwayProducts::HalfwayProducts(const HalfwayModel& model, const std::vector<DirectionPair>& pairs,
+                                 bool held)
+    : model_(model),
+      pairs_(pairs),
+      rows_((model.terms.size() + gramPadding - 1) / gramPadding * gramPadding) {
+    if (!held || rows_ * pairs.size() > mostHeld) return;
+    terms_.resize(rows_ * pairs.size());
+    weights_.resize(pairs.size());
+    tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t part) {
+        const std::size_t first = pairs.size() * part / parts,
+                          last = pairs.size() * (part + 1) / parts;
+        compute(first, last - first, terms_.data() + rows_ * first, weights_.data() + first);
+    });
+}
+
+void HalfwayProducts::compute(std::size_t first, std::size_t count, double* terms,
+                              double* weights) const {
+    for (std::size_t k = 0; k < count; ++k, terms += rows_) {
+        const auto& [wi, wo] = pairs_[first + k];
+        const HalfwayPoint point = model_.axes.at(wi, wo);
+        weights[k] = point.weight;
+        model_.terms.evaluate(point, terms);
+        std::fill(terms + model_.terms.size(), terms + rows_, 0.0);
+    }
+}
+
+void HalfwayProducts::find(std::size_t first, std::size_t count, Columns& columns) const {
+    if (!weights_.empty()) {
+        columns.terms = terms_.data() + rows_ * first;
+        columns.weights = weights_.data() + first;
+        return;
+    }
+    columns.space.resize(rows_ * count);
+    columns.weightSpace.resize(count);
+    compute(first, count, columns.space.data(), columns.weightSpace.data());
+    columns.terms = columns.space.data();
+    columns.weights = columns.weightSpace.data();
+}
+
+HalfwayErrors::HalfwayErrors(const HalfwayModel& model, const HalfwayData& data)
+    : model_(model),
+      data_(data),
+      products_(model_, data.samples.pairs, true),
+      residuals_(data.samples.values.size()),
+      share_(1 / weightOf(data.samples)) {}
+
+HalfwayErrors::~HalfwayErrors() = default;
+
+void HalfwayErrors::addLosses(std::size_t first, std::size_t last, const HalfwayValues& values,
+                              std::vector<double>& losses) {
+    const HalfwaySamples& samples = data_.samples;
+    const std::size_t channels = samples.channels();
+    losses.assign(channels, 0.0);
+    Evaluation form(model_, products_, values);
+    for (; first < last; first += chunk) {
+        const std::size_t count = std::min(chunk, last - first);
+        form.at(first, count);
+        for (std::size_t c = 0; c < channels; ++c) {
+            for (std::size_t k = 0; k < count; ++k) {
+                const TwoParts parts = form.parts(k, static_cast<Index>(c));
+                const std::size_t place = (first + k) * channels + c;
+                const double now = parts.smooth + parts.lobe + model_.floor;
+                const double error = std::log(now / (samples.values[place] + model_.floor));
+                const double weight = weightOf(samples.spread[first + k]);
+                losses[c] += weight * huberOf(error, data_.huber);
+                residuals_[place] = {
+                    1 / now * parts.smooth, 1 / now * parts.lobe, error,
+                    weight * std::min(1.0, data_.huber / std::max(std::abs(error), 1e-300))};
+            }
+        }
+    }
+}
+
+std::vector<double> HalfwayErrors::losses(const HalfwayValues& values) {
+    std::vector<std::vector<double>> sums(parts);
+    tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t part) {
+        const std::size_t size = data_.samples.size();
+        addLosses(size * part / parts, size * (part + 1) / parts, values, sums[part]);
+    });
+    if (data_.albedo)
+        albedo_ = std::make_unique<const HalfwayAlbedoErrors>(model_, *data_.albedo, values);
+    std::vector<double> total(data_.samples.channels(), 0.0);
+    for (std::size_t c = 0; c < total.size(); ++c) {
+        for (const auto& part : sums) total[c] += share_ * part[c];
+        if (albedo_) total[c] += albedo_->loss(c);
+    }
+    return total;
+}
+
+void HalfwayErrors::addSamples(std::size_t first, std::size_t last, const std::vector<bool>& wanted,
+                               std::vector<HalfwaySystem>& systems) const {
+    const std::size_t channels = wanted.size(), rows = products_.rows();
+    const auto n = static_cast<Index>(rows);
+    systems.resize(channels);
+    for (std::size_t c = 0; c < channels; ++c) {
+        if (wanted[c]) systems[c] = {Eigen::MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n)};
+    }
+    std::vector<double> space(2 * rows * chunk);
+    HalfwayProducts::Columns columns;
+    for (; first < last; first += chunk) {
+        const std::size_t count = std::min(chunk, last - first);
+        products_.find(first, count, columns);
+        for (std::size_t c = 0; c < channels; ++c) {
+            if (!wanted[c]) continue;
+            // Row-major for the one is column-major for the other: its lower triangle is our upper.
+            addResiduals({columns.terms, &residuals_[first * channels + c], count, rows,
+                          model_.terms.smooth(), channels},
+                         space.data(), systems[c].gram.data(), systems[c].slope.data());
+        }
+    }
+}
+
+std::vector<HalfwaySystem> HalfwayErrors::systems(const std::vector<bool>& wanted) const {
     std::vector<std::vector<HalfwaySystem>> sums(parts);
     tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t part) {
-        const std::size_t size = data.samples.size();
-        addSamples(model, data, values, size * part / parts, size * (part + 1) / parts, sums[part]);
+        const std::size_t size = data_.samples.size();
+        addSamples(size * part / parts, size * (part + 1) / parts, wanted, sums[part]);
     });
-    const auto n = static_cast<Index>(model.terms.size());
-    const double share = 1 / weightOf(data.samples);
-    std::vector<HalfwaySystem> total(sums[0].size());
+    const auto n = static_cast<Index>(model_.terms.size());
+    std::vector<HalfwaySystem> total(wanted.size());
     for (std::size_t c = 0; c < total.size(); ++c) {
+        if (!wanted[c]) continue;
         Eigen::MatrixXd gram =
             Eigen::MatrixXd::Zero(sums[0][c].gram.rows(), sums[0][c].gram.cols());
         total[c].slope = Eigen::VectorXd::Zero(n);
         for (const auto& part : sums) {
             gram += part[c].gram;
-            total[c].slope += share * part[c].slope.head(n);
-            total[c].loss += share * part[c].loss;
+            total[c].slope += share_ * part[c].slope.head(n);
         }
-        gram *= share;
+        gram *= share_;
         total[c].gram = gram.topLeftCorner(n, n).selfadjointView<Eigen::Upper>();
+        if (albedo_) albedo_->addTo(c, total[c]);
     }
-    if (data.albedo) addAlbedo(model, *data.albedo, values, total);
     return total;
 }
 
@@ -235,31 +298,35 @@ HalfwayValues halfwayStart(const HalfwayModel& model, const HalfwaySamples& samp
     return values;
 }
 
-HalfwayValues descended(const HalfwayModel& model, const HalfwayData& data, HalfwayValues values,
-                        int steps, const std::function<void()>& stepDone) {
-    std::vector<Descent> channels(static_cast<std::size_t>(values.cols()));
-    std::vector<HalfwaySystem> systems = halfwaySystems(model, data, values);
-    for (std::size_t c = 0; c < channels.size(); ++c) {
-        channels[c].values = values.col(static_cast<Index>(c));
-        channels[c].system = std::move(systems[c]);
-    }
+HalfwayValues descended(HalfwayErrors& errors, HalfwayValues values, int steps,
+                        const std::function<void()>& stepDone) {
+    std::vector<double> losses = errors.losses(values);
+    const std::size_t channels = losses.size();
+    std::vector<Descent> descents;
+    for (std::size_t c = 0; c < channels; ++c)
+        descents.push_back({.values = values.col(static_cast<Index>(c)), .loss = losses[c]});
+    std::vector<bool> moved(channels, true);
     for (int step = 0; step < steps; ++step) {
-        for (std::size_t c = 0; c < channels.size(); ++c)
-            values.col(static_cast<Index>(c)) = channels[c].next();
+        std::vector<HalfwaySystem> systems = errors.systems(moved);
+        for (std::size_t c = 0; c < channels; ++c) {
+            if (moved[c]) descents[c].system = std::move(systems[c]);
+            if (!descents[c].done) values.col(static_cast<Index>(c)) = descents[c].next();
+        }
         if (!values.allFinite())
             throw NumericError("the halfway form has no solution: f is too large");
-        systems = halfwaySystems(model, data, values);
+        losses = errors.losses(values);
         bool done = true;
-        for (std::size_t c = 0; c < channels.size(); ++c) {
-            if (!channels[c].done)
-                channels[c].judge(values.col(static_cast<Index>(c)), std::move(systems[c]));
-            done = done && channels[c].done;
+        for (std::size_t c = 0; c < channels; ++c) {
+            Descent& descent = descents[c];
+            moved[c] = !descent.done &&
+                       descent.judge(values.col(static_cast<Index>(c)), losses[c]) && !descent.done;
+            done = done && descent.done;
         }
         if (stepDone) stepDone();
         if (done) break;
     }
-    for (std::size_t c = 0; c < channels.size(); ++c)
-        values.col(static_cast<Index>(c)) = channels[c].values;
+    for (std::size_t c = 0; c < channels; ++c)
+        values.col(static_cast<Index>(c)) = descents[c].values;
     return values;
 }
 
@@ -273,10 +340,11 @@ std::vector<HalfwayCeiling> halfwayCeilings(const HalfwayModel& model,
         double& top = ceilings[k % channels].top;
         top = std::max(top, samples.values[k]);
     }
-    Evaluation form(model, values);
+    const HalfwayProducts products(model, samples.pairs, false);
+    Evaluation form(model, products, values);
     for (std::size_t first = 0; first < samples.size(); first += chunk) {
         const std::size_t count = std::min(chunk, samples.size() - first);
-        form.at(samples.pairs, first, count);
+        form.at(first, count);
         for (std::size_t c = 0; c < channels; ++c) {
             HalfwayCeiling& ceiling = ceilings[c];
             for (std::size_t k = 0; k < count; ++k) {
@@ -300,12 +368,13 @@ std::vector<double> halfwayAt(const HalfwayModel& model, const std::vector<Direc
                               const HalfwayValues& values) {
     const auto channels = static_cast<std::size_t>(values.cols());
     std::vector<double> f(pairs.size() * channels);
+    const HalfwayProducts products(model, pairs, false);
     tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t part) {
-        Evaluation form(model, values);
+        Evaluation form(model, products, values);
         const std::size_t end = pairs.size() * (part + 1) / parts;
         for (std::size_t first = pairs.size() * part / parts; first < end; first += chunk) {
             const std::size_t count = std::min(chunk, end - first);
-            form.at(pairs, first, count);
+            form.at(first, count);
             for (std::size_t k = 0; k < count; ++k) {
                 for (std::size_t c = 0; c < channels; ++c) {
                     const TwoParts parts = form.parts(k, static_cast<Index>(c));

@@ -2,16 +2,20 @@
 
 #include <hshfit/representation/halfway/halfway_axes.h>
 #include <hshfit/representation/halfway/halfway_terms.h>
+#include <hshfit/representation/halfway/internal/halfway_gram.h>
 #include <hshfit/representation/halfway/internal/halfway_samples.h>
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace hshfit::inline representation::inline halfway {
 
 struct HalfwayAlbedo;
+class HalfwayAlbedoErrors;
 
 /// exp of more than that is cut off: a step of the descent may go astray.
 inline constexpr double greatestExponent = 60;
@@ -26,11 +30,10 @@ struct HalfwayModel {
     double floor;  ///< e of ln(f + e)
 };
 
-/// One channel at given coefficients: the loss, its gradient and Gauss and Newton's matrix.
+/// One channel at given coefficients: the gradient of the loss and Gauss and Newton's matrix.
 struct HalfwaySystem {
     Eigen::MatrixXd gram;
     Eigen::VectorXd slope;
-    double loss = 0;
 };
 
 /// The samples, and the way in which errors count: as squares up to `huber`, beyond it as
@@ -41,9 +44,57 @@ struct HalfwayData {
     double huber;
 };
 
-/// The systems of all channels; the same for any number of threads.
-std::vector<HalfwaySystem> halfwaySystems(const HalfwayModel& model, const HalfwayData& data,
-                                          const HalfwayValues& values);
+/// The terms at pairs of directions, which no coefficient changes: those of all pairs, `held` where
+/// that takes little memory, or else computed when they are asked for.
+class HalfwayProducts {
+public:
+    HalfwayProducts(const HalfwayModel& model, const std::vector<DirectionPair>& pairs, bool held);
+
+    /// The terms of one pair as a column, with zeros after the last, and the weight of the lobe.
+    struct Columns {
+        std::vector<double> space = {}, weightSpace = {};
+        const double *terms = nullptr, *weights = nullptr;
+    };
+    /// Those of `count` pairs from `first` on, for as long as `columns` and this exist.
+    void find(std::size_t first, std::size_t count, Columns& columns) const;
+    std::size_t rows() const { return rows_; }
+
+private:
+    void compute(std::size_t first, std::size_t count, double* terms, double* weights) const;
+
+    const HalfwayModel& model_;
+    const std::vector<DirectionPair>& pairs_;
+    std::size_t rows_;
+    std::vector<double> terms_ = {}, weights_ = {};
+};
+
+/// The errors of a form at data, step by step. The same for any number of threads.
+class HalfwayErrors {
+public:
+    HalfwayErrors(const HalfwayModel& model, const HalfwayData& data);
+    void countSquaresUpTo(double huber) { data_.huber = huber; }
+    ~HalfwayErrors();
+    HalfwayErrors(const HalfwayErrors&) = delete;
+    HalfwayErrors& operator=(const HalfwayErrors&) = delete;
+
+    /// The loss of each channel at coefficients.
+    std::vector<double> losses(const HalfwayValues& values);
+    /// The systems at the coefficients that `losses` had last, of the channels that are wanted.
+    std::vector<HalfwaySystem> systems(const std::vector<bool>& wanted) const;
+
+private:
+    void addLosses(std::size_t first, std::size_t last, const HalfwayValues& values,
+                   std::vector<double>& losses);
+    void addSamples(std::size_t first, std::size_t last, const std::vector<bool>& wanted,
+                    std::vector<HalfwaySystem>& systems) const;
+
+    const HalfwayModel model_;
+    HalfwayData data_;
+    HalfwayProducts products_;
+    std::vector<HalfwayResidual> residuals_;  ///< [sample][channel]
+    std::unique_ptr<const HalfwayAlbedoErrors> albedo_;
+    double share_;
+};
 
 /// The mean over samples, by their weights, and channels, of Huber's function of
 /// ln(g + e) - ln(f + e).
@@ -54,8 +105,8 @@ double halfwayLoss(const HalfwayModel& model, const HalfwaySamples& samples, dou
 HalfwayValues halfwayStart(const HalfwayModel& model, const HalfwaySamples& samples);
 
 /// At most `steps` steps of Levenberg and Marquardt's method; `stepDone` is called after each.
-HalfwayValues descended(const HalfwayModel& model, const HalfwayData& data, HalfwayValues values,
-                        int steps, const std::function<void()>& stepDone = {});
+HalfwayValues descended(HalfwayErrors& errors, HalfwayValues values, int steps,
+                        const std::function<void()>& stepDone = {});
 
 /// The greatest exponents over the samples where their part counts, and the greatest f of the BRDF:
 /// for each channel, in single precision.

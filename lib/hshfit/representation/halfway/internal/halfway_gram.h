@@ -4,13 +4,28 @@
 
 namespace hshfit::inline representation::inline halfway {
 
-/// Columns of `addWeightedGram` have to be a multiple of it: three of the widest vectors.
-constexpr std::size_t gramPadding = 24;
+/// One channel at a pair: the parts of the form as shares of f + e, and the error of the logarithm
+/// with its weight.
+struct HalfwayResidual {
+    double smooth, lobe, error, weight;
+};
 
-/// gram[i * columns + j] += sum over k < rows of weights[k] x[k][i] x[k][j] for i >= j (and some
-/// others), where x[k] starts at x + k * columns. `scaled` has room for as many numbers as x.
-/// Double precision, by code for the best instruction set that the machine has.
-void addWeightedGram(const double* x, const double* weights, std::size_t rows, std::size_t columns,
-                     double* scaled, double* gram);
+/// Columns of `addResiduals` have to be a multiple of it: the widest vector.
+constexpr std::size_t gramPadding = 8;
+
+/// Terms at pairs, [pair][column], the smooth ones first, and one channel's residuals there, of
+/// which the next is `stride` further.
+struct HalfwayResidualRows {
+    const double* terms;
+    const HalfwayResidual* residuals;
+    std::size_t count, columns, smooth, stride;
+};
+
+/// With the derivatives x[k][i] = share of the part of i times the term, adds over pairs
+///     gram[i * columns + j] += weight x[k][i] x[k][j]  for i >= j (and some others),
+///     slope[i]              += weight error x[k][i].
+/// `space` has room for twice as many numbers as `terms`. Double precision, by code for the best
+/// instruction set that the machine has.
+void addResiduals(const HalfwayResidualRows& rows, double* space, double* gram, double* slope);
 
 }  // namespace hshfit::inline representation::inline halfway

@@ -48,8 +48,11 @@ std::vector<HalfwayLobe> about(const HalfwayLobe& lobe, std::initializer_list<do
     const double width = std::sqrt(lobe.along * lobe.across), ratio = lobe.along / lobe.across;
     std::vector<HalfwayLobe> lobes;
     for (const double factor : factors) {
-        for (const double shelf : masked ? maskedShelves : shelves)
+        for (const double shelf : masked ? maskedShelves : shelves) {
+            // The lobe itself has been tried.
+            if (factor == 1 && masked == lobe.masked && inSingle(shelf) == lobe.shelf) continue;
             lobes.push_back(lobeOf(width * factor, ratio, lobe.turn, shelf, masked));
+        }
     }
     return lobes;
 }
@@ -92,10 +95,11 @@ private:
     double fit(const HalfwayLobe& lobe, HalfwayValues& values) const {
         const HalfwayAxes axes(lobe);
         const HalfwayModel model{terms_, axes, floor_};
-        values =
-            descended(model, {grey_, nullptr, roughHuber}, halfwayStart(model, grey_), trialSteps);
-        values = descended(model, {grey_, nullptr, fineHuber}, std::move(values), trialSteps);
-        return halfwayLoss(model, grey_, fineHuber, values);
+        HalfwayErrors errors(model, {grey_, nullptr, roughHuber});
+        values = descended(errors, halfwayStart(model, grey_), trialSteps);
+        errors.countSquaresUpTo(fineHuber);
+        values = descended(errors, std::move(values), trialSteps);
+        return errors.losses(values).front();
     }
 
     const HalfwaySamples& grey_;
