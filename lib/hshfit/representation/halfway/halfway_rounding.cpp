@@ -108,7 +108,8 @@ void quantiseHalfway(Representation& representation, Precision precision, const 
     const HalfwayAlbedo albedo = albedoOf(brdf, representation.head.reciprocal);
     const HalfwayModel model{terms, axes, halfwayFloor(albedo)};
     const HalfwayData data{samples, &albedo, fineHuber};
-    const std::vector<HalfwaySystem> systems = halfwaySystems(model, data, values);
+    const std::vector<HalfwaySystem> systems = halfwaySystems(
+        model, data, values, std::vector<HalfwayNeed>(channels, HalfwayNeed::all));
     std::vector<double> found(fitted.size()), tried(fitted.size());
     std::vector<double> least(channels, std::numeric_limits<double>::infinity());
     for (const double regularisation : regularisations) {
@@ -119,7 +120,8 @@ void quantiseHalfway(Representation& representation, Precision precision, const 
         }
         const auto losses = halfwaySystems(
             model, data,
-            Eigen::Map<const HalfwayValues>(tried.data(), values.rows(), values.cols()));
+            Eigen::Map<const HalfwayValues>(tried.data(), values.rows(), values.cols()),
+            std::vector<HalfwayNeed>(channels, HalfwayNeed::loss));
         for (std::size_t c = 0; c < channels; ++c) {
             if (!(losses[c].loss < least[c])) continue;
             least[c] = losses[c].loss;

@@ -113,10 +113,11 @@ void addAlbedo(const HalfwayModel& model, const HalfwayAlbedo& albedo, const Hal
             if (!(target > 0)) continue;
             const double relative = sums[s * channels + c] / target - 1;
             const double weight = albedoWeight * albedo.shares[s];
+            systems[c].loss += weight * relative * relative / 2;
+            if (systems[c].gram.size() == 0) continue;
             const Eigen::VectorXd column = slopes[s].col(static_cast<Eigen::Index>(c)) / target;
             systems[c].gram.noalias() += weight * column * column.transpose();
             systems[c].slope += weight * relative * column;
-            systems[c].loss += weight * relative * relative / 2;
         }
     }
 }

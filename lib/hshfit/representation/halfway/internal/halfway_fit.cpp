@@ -96,12 +96,18 @@ private:
 
 /// Adds samples `first` .. `last` - 1 to the systems, whose matrices are padded.
 void addSamples(const HalfwayModel& model, const HalfwayData& data, const HalfwayValues& values,
-                std::size_t first, std::size_t last, std::vector<HalfwaySystem>& systems) {
+                const std::vector<HalfwayNeed>& needs, std::size_t first, std::size_t last,
+                std::vector<HalfwaySystem>& systems) {
     const HalfwaySamples& samples = data.samples;
     const std::size_t channels = samples.channels();
     Evaluation form(model, values);
     const auto rows = static_cast<Index>(form.rows());
-    systems.assign(channels, {Eigen::MatrixXd::Zero(rows, rows), Eigen::VectorXd::Zero(rows), 0.0});
+    systems.resize(channels);
+    for (std::size_t c = 0; c < channels; ++c) {
+        if (needs[c] != HalfwayNeed::all) continue;
+        systems[c].gram = Eigen::MatrixXd::Zero(rows, rows);
+        systems[c].slope = Eigen::VectorXd::Zero(rows);
+    }
     Eigen::MatrixXd slopes(rows, static_cast<Index>(chunk)),
         scaled(rows, static_cast<Index>(chunk));
     std::vector<double> weights(chunk);
@@ -110,6 +116,8 @@ void addSamples(const HalfwayModel& model, const HalfwayData& data, const Halfwa
         const std::size_t count = std::min(chunk, last - first);
         form.at(samples.pairs, first, count);
         for (std::size_t c = 0; c < channels; ++c) {
+            if (needs[c] == HalfwayNeed::nothing) continue;
+            const bool all = needs[c] == HalfwayNeed::all;
             HalfwaySystem& system = systems[c];
             for (std::size_t k = 0; k < count; ++k) {
                 const TwoParts parts = form.parts(k, static_cast<Index>(c));
@@ -118,10 +126,12 @@ void addSamples(const HalfwayModel& model, const HalfwayData& data, const Halfwa
                 const double error = std::log(now / wanted);
                 const double weight = weightOf(samples.spread[first + k]);
                 system.loss += weight * huberOf(error, data.huber);
+                if (!all) continue;
                 weights[k] = weight * std::min(1.0, data.huber / std::max(std::abs(error), 1e-300));
                 errors[static_cast<Index>(k)] = weights[k] * error;
                 form.derivatives(k, parts, 1 / now, slopes.col(static_cast<Index>(k)).data());
             }
+            if (!all) continue;
             // Row-major for the one is column-major for the other: its lower triangle is our upper.
             addWeightedGram(slopes.data(), weights.data(), count, form.rows(), scaled.data(),
                             system.gram.data());
@@ -167,23 +177,26 @@ struct Descent {
 }  // namespace
 
 std::vector<HalfwaySystem> halfwaySystems(const HalfwayModel& model, const HalfwayData& data,
-                                          const HalfwayValues& values) {
+                                          const HalfwayValues& values,
+                                          const std::vector<HalfwayNeed>& needs) {
     std::vector<std::vector<HalfwaySystem>> sums(parts);
     tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t part) {
         const std::size_t size = data.samples.size();
-        addSamples(model, data, values, size * part / parts, size * (part + 1) / parts, sums[part]);
+        addSamples(model, data, values, needs, size * part / parts, size * (part + 1) / parts,
+                   sums[part]);
     });
     const auto n = static_cast<Index>(model.terms.size());
     const double share = 1 / weightOf(data.samples);
     std::vector<HalfwaySystem> total(sums[0].size());
     for (std::size_t c = 0; c < total.size(); ++c) {
+        for (const auto& part : sums) total[c].loss += share * part[c].loss;
+        if (needs[c] != HalfwayNeed::all) continue;
         Eigen::MatrixXd gram =
             Eigen::MatrixXd::Zero(sums[0][c].gram.rows(), sums[0][c].gram.cols());
         total[c].slope = Eigen::VectorXd::Zero(n);
         for (const auto& part : sums) {
             gram += part[c].gram;
             total[c].slope += share * part[c].slope.head(n);
-            total[c].loss += share * part[c].loss;
         }
         gram *= share;
         total[c].gram = gram.topLeftCorner(n, n).selfadjointView<Eigen::Upper>();
@@ -238,25 +251,25 @@ HalfwayValues halfwayStart(const HalfwayModel& model, const HalfwaySamples& samp
 HalfwayValues descended(const HalfwayModel& model, const HalfwayData& data, HalfwayValues values,
                         int steps, const std::function<void()>& stepDone) {
     std::vector<Descent> channels(static_cast<std::size_t>(values.cols()));
-    std::vector<HalfwaySystem> systems = halfwaySystems(model, data, values);
+    std::vector<HalfwayNeed> needs(channels.size(), HalfwayNeed::all);
+    std::vector<HalfwaySystem> systems = halfwaySystems(model, data, values, needs);
     for (std::size_t c = 0; c < channels.size(); ++c) {
         channels[c].values = values.col(static_cast<Index>(c));
         channels[c].system = std::move(systems[c]);
     }
     for (int step = 0; step < steps; ++step) {
         for (std::size_t c = 0; c < channels.size(); ++c)
-            values.col(static_cast<Index>(c)) = channels[c].next();
+            if (!channels[c].done) values.col(static_cast<Index>(c)) = channels[c].next();
         if (!values.allFinite())
             throw NumericError("the halfway form has no solution: f is too large");
-        systems = halfwaySystems(model, data, values);
-        bool done = true;
+        systems = halfwaySystems(model, data, values, needs);
         for (std::size_t c = 0; c < channels.size(); ++c) {
-            if (!channels[c].done)
-                channels[c].judge(values.col(static_cast<Index>(c)), std::move(systems[c]));
-            done = done && channels[c].done;
+            if (channels[c].done) continue;
+            channels[c].judge(values.col(static_cast<Index>(c)), std::move(systems[c]));
+            if (channels[c].done) needs[c] = HalfwayNeed::nothing;
         }
         if (stepDone) stepDone();
-        if (done) break;
+        if (std::ranges::all_of(channels, &Descent::done)) break;
     }
     for (std::size_t c = 0; c < channels.size(); ++c)
         values.col(static_cast<Index>(c)) = channels[c].values;

@@ -41,9 +41,13 @@ struct HalfwayData {
     double huber;
 };
 
-/// The systems of all channels; the same for any number of threads.
+/// The part of a channel's system that is computed; matrix and gradient take most of the time.
+enum class HalfwayNeed : unsigned char { nothing, loss, all };
+
+/// The systems of all channels, what is not needed left empty; the same for any number of threads.
 std::vector<HalfwaySystem> halfwaySystems(const HalfwayModel& model, const HalfwayData& data,
-                                          const HalfwayValues& values);
+                                          const HalfwayValues& values,
+                                          const std::vector<HalfwayNeed>& needs);
 
 /// The mean over samples, by their weights, and channels, of Huber's function of
 /// ln(g + e) - ln(f + e).
