@@ -56,8 +56,7 @@ std::string inputsKey(const scene::Scene& read, const SceneSurfaces& surfaces) {
 
 std::string lightKey(const scene::Scene& read, const SceneSurfaces& surfaces) {
     std::string key = fmt::format("hshfit {}\n", version);
-    for (const SurfaceMaterial& material : surfaces.materials)
-        key += valuesKey(*material.brdf);
+    for (const SurfaceMaterial& material : surfaces.materials) key += valuesKey(*material.brdf);
     for (const SurfaceObject& object : surfaces.objects) {
         key += checksumOf(object.mesh.positions);
         key += checksumOf(object.mesh.triangles);

@@ -48,9 +48,7 @@ std::vector<choice::Candidate> candidatesFor(const CandidateSource& source,
     const auto rank = [&](const choice::Candidate& candidate) {
         return std::tuple(!takes(candidate), candidate.kind == "coefficients", candidate.seconds);
     };
-    std::ranges::stable_sort(all, [&](const auto& a, const auto& b) {
-        return rank(a) < rank(b);
-    });
+    std::ranges::stable_sort(all, [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
     return all;
 }
 

@@ -19,7 +19,7 @@ struct ChooseOptions {
     std::optional<std::size_t> cost = {};   ///< cycles at most: choice::ChoiceOptions::cycles
     std::optional<double> error = {};       ///< mean FLIP at most; none: PoorBounds::flip
     double seconds = choice::ChoiceOptions{}.cpuSeconds;  ///< of the processor, of all candidates
-    tradeoff::ProjectionFolder folder = {};  ///< projections of earlier runs
+    tradeoff::ProjectionFolder folder = {};               ///< projections of earlier runs
 };
 OptionRows<ChooseOptions> chooseOptions();
 

@@ -21,9 +21,11 @@ double processorSeconds() {
     return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-/// Seconds of a formula's fit that is slow, of any fit whose long part is done, and the FLIP of the
-/// quick formulas, in bounds of faithful ones, beyond which a slow one is tried last.
-constexpr double slowFit = 10, halfMade = 1, farOff = 2;
+/// Seconds of a formula's fit that is slow, and of any candidate whose long part is done.
+constexpr double slowFit = 10, halfMade = 1;
+/// The FLIP of the quick formulas, in bounds of faithful ones, beyond which a slow one is tried
+/// last, and how many times as long its fit goes on there.
+constexpr double farOff = 2, longer = 4;
 
 /// The candidates that are left, and the next of them.
 class Queue {
@@ -34,14 +36,15 @@ public:
     bool isEmpty() const { return left_.empty(); }
     /// In their order, but slow fits of formulas last where quick ones are far off.
     Candidate next() {
+        const bool areFar = std::isfinite(nearest_) && nearest_ > farOff * bound_;
         const auto waits = [&](const Candidate& candidate) {
-            return candidate.isFormula && candidate.seconds >= slowFit &&
-                   std::isfinite(nearest_) && nearest_ > farOff * bound_;
+            return areFar && candidate.isFormula && candidate.seconds >= slowFit;
         };
         auto place = std::ranges::find_if_not(left_, waits);
         if (place == left_.end()) place = left_.begin();
         Candidate candidate = std::move(*place);
         left_.erase(place);
+        if (waits(candidate)) candidate.seconds *= longer;
         return candidate;
     }
     void measured(const Candidate& candidate, double flip) {

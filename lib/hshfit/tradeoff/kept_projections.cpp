@@ -118,8 +118,7 @@ KeptProjection failureOf(const Error& error) {
 KeptProjections::KeptProjections(const Brdf& brdf, KeepOptions options)
     : brdf_(brdf), options_(std::move(options)) {
     if (!options_.folder || !options_.folder->isUsed()) options_.folder = nullptr;
-    if (options_.folder)
-        content_ = options_.folder->contentOf(brdf, options_.specification);
+    if (options_.folder) content_ = options_.folder->contentOf(brdf, options_.specification);
 }
 
 void KeptProjections::expect(std::span<const Form> forms) {
@@ -179,8 +178,8 @@ std::string KeptProjections::fileKeyOf(Form root) const {
     const ProjectionOptions& options = options_.projection;
     if (root.kind == Kind::halfway) {
         const Laws& laws = brdf_.laws();
-        root.halfway = halfwayOrdersOr(root.halfway, laws.isotropic,
-                                       root.reciprocal || laws.reciprocal);
+        root.halfway =
+            halfwayOrdersOr(root.halfway, laws.isotropic, root.reciprocal || laws.reciprocal);
         return key + fmt::format("{}\nevaluations {}", optionsOf(root), fitEvaluations());
     }
     key += fmt::format("{}\ntolerance {} evaluations {}", optionsOf(root), options.tolerance,
@@ -293,9 +292,8 @@ std::vector<std::pair<Form, KeptProjections::Made>> KeptProjections::projectedTo
         for (std::size_t k = 0; k < forms.size(); ++k) {
             Made made;
             if (both) {
-                made.projection.representation =
-                    gathered(found[k], *bases::make(forms[k].basis, forms[k].order),
-                             root.reciprocal);
+                made.projection.representation = gathered(
+                    found[k], *bases::make(forms[k].basis, forms[k].order), root.reciprocal);
             } else {
                 made.coefficients = std::move(found[k]);
             }

@@ -21,7 +21,7 @@ struct KeepOptions {
     /// Of a search; empty: projections are those of `represent`. Else all these bases are projected
     /// together, which evaluates f once, to `maxOrder` bands, of matrices that are not isotropic to
     /// eight; matrices leave out the last thousandth of the hemisphere above the horizon, where
-    /// lobes are narrowest. What is cut to a lower order agrees within the tolerance.
+    /// lobes are narrowest. Cut to a lower order, they agree within the tolerance.
     std::vector<std::string> bases = {};
     int maxOrder = 0;
     /// Outlives what is made with it.

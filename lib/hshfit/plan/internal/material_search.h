@@ -1,7 +1,7 @@
 #pragma once
 
-#include <hshfit/plan/internal/material_light.h>
 #include <hshfit/plan/internal/ladder.h>
+#include <hshfit/plan/internal/material_light.h>
 #include <hshfit/plan/plan.h>
 #include <hshfit/time_limit.h>
 #include <hshfit/tradeoff/kept_projections.h>

@@ -108,8 +108,8 @@ void quantiseHalfway(Representation& representation, Precision precision, const 
     const HalfwayAlbedo albedo = albedoOf(brdf, representation.head.reciprocal);
     const HalfwayModel model{terms, axes, halfwayFloor(albedo)};
     const HalfwayData data{samples, &albedo, fineHuber};
-    const std::vector<HalfwaySystem> systems = halfwaySystems(
-        model, data, values, std::vector<HalfwayNeed>(channels, HalfwayNeed::all));
+    const std::vector<HalfwaySystem> systems =
+        halfwaySystems(model, data, values, std::vector<HalfwayNeed>(channels, HalfwayNeed::all));
     std::vector<double> found(fitted.size()), tried(fitted.size());
     std::vector<double> least(channels, std::numeric_limits<double>::infinity());
     for (const double regularisation : regularisations) {

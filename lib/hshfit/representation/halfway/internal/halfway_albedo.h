@@ -25,7 +25,8 @@ struct HalfwayAlbedo {
 HalfwayAlbedo albedoOf(const Brdf& brdf, bool reciprocal);
 
 /// Adds the squares of the relative errors of the albedos to the systems, the loss alone to those
-/// without a matrix: the mean over strata to 85 degrees weighs ten times as much as a square of a logarithm.
+/// without a matrix: the mean over strata to 85 degrees weighs ten times as much as a square of a
+/// logarithm.
 void addAlbedo(const HalfwayModel& model, const HalfwayAlbedo& albedo, const HalfwayValues& values,
                std::vector<HalfwaySystem>& systems);
 
