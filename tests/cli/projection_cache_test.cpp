@@ -43,8 +43,8 @@ TEST_F(ProjectionCacheCommand, TradeoffTakesWhatItMadeBefore) {
     const json without = trade("");
     EXPECT_EQ(trade(cache()), without);
     const auto files = kept();
-    // By outgoing direction, both directions whole and symmetric, and both halfway forms.
-    EXPECT_EQ(files.size(), 5U);
+    // By outgoing direction, both directions whole and symmetric, and the halfway form.
+    EXPECT_EQ(files.size(), 4U);
     EXPECT_EQ(trade(cache()), without);
     EXPECT_EQ(kept(), files);
 }
@@ -82,7 +82,7 @@ TEST_F(ProjectionCacheCommand, ADamagedFileIsToldAndMadeAnew) {
     EXPECT_EQ(remarks, "");
 }
 
-TEST_F(ProjectionCacheCommand, PlanTakesWhatItMadeBeforeAndChooseWhatTradeoffMade) {
+TEST_F(ProjectionCacheCommand, PlanTakesWhatItMadeBeforeAndTradeoffWhatChooseMade) {
     write("material.json", preset(".4"));
     write("scene.json", R"({"format": "hshfit-scene", "version": 1,
         "materials": [{"name": "metal", "brdf": ")" +
@@ -100,17 +100,17 @@ TEST_F(ProjectionCacheCommand, PlanTakesWhatItMadeBeforeAndChooseWhatTradeoffMad
     const auto files = kept();
     EXPECT_EQ(plan(cache()), without);
     EXPECT_EQ(kept(), files);
-    // The halfway form 5,4,3 of both commands is one.
-    const auto forms = [&](const std::string& command) {
-        const Answer answer = run(command + " " + cache());
+    // The halfway form 5,4,3 is one for choose and tradeoff.
+    const auto countAfter = [&](const std::string& command) {
+        const Answer answer = run(command + " --json " + cache());
         EXPECT_EQ(answer.code, 0) << answer.err;
         return kept().size();
     };
     const std::string material = path("material.json");
-    const std::size_t traded =
-        forms("tradeoff " + material +
-              " --forms halfway --precisions half --no-timing --formulas none --json");
-    EXPECT_EQ(forms("choose " + material + " --kinds halfway --json"), traded);
+    const std::size_t chosen = countAfter("choose " + material + " --kinds halfway --seconds 4");
+    EXPECT_EQ(countAfter("tradeoff " + material +
+                         " --forms halfway --halfway 5,4,3 --no-timing --formulas none"),
+              chosen);
 }
 
 TEST_F(ProjectionCacheCommand, AFileIsNoFolder) {

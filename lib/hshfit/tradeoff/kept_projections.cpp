@@ -178,6 +178,8 @@ std::string KeptProjections::fileKeyOf(Form root) const {
     const ProjectionOptions& options = options_.projection;
     if (root.kind == Kind::halfway) {
         const Laws& laws = brdf_.laws();
+        // The symmetric half of these is the whole.
+        if (laws.reciprocal && (laws.mirrorSymmetric || !laws.isotropic)) root.reciprocal = true;
         root.halfway =
             halfwayOrdersOr(root.halfway, laws.isotropic, root.reciprocal || laws.reciprocal);
         return key + fmt::format("{}\nevaluations {}", optionsOf(root), fitEvaluations());

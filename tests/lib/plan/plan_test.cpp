@@ -8,6 +8,7 @@
 #include <hshfit/plan/internal/material_light.h>
 #include <hshfit/plan/plan_files.h>
 #include <hshfit/representation/forms/represented_brdf.h>
+#include <hshfit/tradeoff/kept_projections.h>
 
 #include <brdfs/catalog.h>
 
