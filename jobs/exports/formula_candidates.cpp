@@ -145,12 +145,18 @@ std::vector<Candidate> formulaCandidates(const CandidateSource& source) {
         candidates.push_back(
             {"model", "the model itself", [source] { return theModel(source); }, 0});
     for (const LobeModel& row : lobeModels)
-        candidates.push_back(
-            {"lobes", row.name, [source, &row] { return fittedLobes(source, row); }, 1});
+        candidates.push_back({.kind = "lobes",
+                              .name = row.name,
+                              .make = [source, &row] { return fittedLobes(source, row); },
+                              .seconds = 1,
+                              .isFormula = true});
     for (const StandardMaterial& row : standardMaterials)
-        candidates.push_back({row.kind, row.name,
-                              [source, &row] { return standardMaterial(source, row.target); },
-                              isModel(source.brdf) ? std::min(row.seconds, 4.0) : row.seconds});
+        candidates.push_back(
+            {.kind = row.kind,
+             .name = row.name,
+             .make = [source, &row] { return standardMaterial(source, row.target); },
+             .seconds = isModel(source.brdf) ? std::min(row.seconds, 4.0) : row.seconds,
+             .isFormula = true});
     return candidates;
 }
 

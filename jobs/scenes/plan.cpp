@@ -1,6 +1,7 @@
 #include "plan.h"
 
 #include <jobs/exports/formula_candidates.h>
+#include <jobs/exports/projection_cache.h>
 #include <jobs/source/source.h>
 #include "scene_surfaces.h"
 
@@ -12,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -38,6 +40,7 @@ plan::Plan planScene(const std::string& path, const std::string& output,
                         Setting{"PlanOptions::byTime"}));
     }
     plan::PlanOptions how = options;
+    useCache(how.folder, listener, std::filesystem::path(read.file).parent_path());
     if (!read.objects.empty() && !read.cameras.empty()) how.seen = seenIn(read);
     how.makeFormulas = [](const Brdf& brdf, const scene::Material& material,
                           const std::vector<std::string>& kinds) {

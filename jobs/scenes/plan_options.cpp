@@ -2,6 +2,7 @@
 
 #include <jobs/common/option_words.h>
 #include <jobs/exports/formula_candidates.h>
+#include <jobs/exports/projection_cache.h>
 
 namespace hshfit::jobs {
 namespace {
@@ -23,6 +24,7 @@ constexpr OptionRow planRows[] = {
         "End the searches after that time; a material whose search has not ended takes a large "
         "halfway form"}
         .within(bounds::seconds),
+    cacheRow(at<&PlanOptions::folder, &tradeoff::ProjectionFolder::path>),
 };
 
 }  // namespace

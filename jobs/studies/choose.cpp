@@ -1,6 +1,7 @@
 #include "choose.h"
 
 #include <jobs/common/inputs.h>
+#include <jobs/exports/projection_cache.h>
 #include <jobs/source/source.h>
 #include "choose_renderers.h"
 #include "stand_ins.h"
@@ -15,6 +16,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 namespace hshfit::jobs {
@@ -26,12 +28,13 @@ std::string inColours(const std::string& spec) {
 }
 
 /// The candidates whose kinds the renderer takes first, and of these the quick ones, so that the
-/// time goes to them.
+/// time goes to them. Matrices, which are larger than halfway forms and no nearer, follow these.
 std::vector<choice::Candidate> candidatesFor(const CandidateSource& source,
                                              const Renderer& renderer,
-                                             const std::vector<std::string>& kinds) {
+                                             const std::vector<std::string>& kinds,
+                                             const tradeoff::ProjectionFolder& folder) {
     std::vector<choice::Candidate> all = formulaCandidates(source);
-    std::ranges::move(formCandidates(source, std::string(renderer.target)),
+    std::ranges::move(formCandidates(source, std::string(renderer.target), folder),
                       std::back_inserter(all));
     all.push_back(bsdfCandidate(source));
     const auto takes = [&](const choice::Candidate& candidate) {
@@ -42,9 +45,10 @@ std::vector<choice::Candidate> candidatesFor(const CandidateSource& source,
         if (kind->alone && !takes(candidate)) return true;
         return !kinds.empty() && std::ranges::find(kinds, candidate.kind) == kinds.end();
     });
-    std::ranges::stable_sort(all, [&](const auto& a, const auto& b) {
-        return std::pair(!takes(a), a.seconds) < std::pair(!takes(b), b.seconds);
-    });
+    const auto rank = [&](const choice::Candidate& candidate) {
+        return std::tuple(!takes(candidate), candidate.kind == "coefficients", candidate.seconds);
+    };
+    std::ranges::stable_sort(all, [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
     return all;
 }
 
@@ -73,6 +77,8 @@ choice::Choice choose(const std::string& spec, const std::string& output,
     }
     std::optional<FileSet> files;
     if (!output.empty()) files.emplace(output, true, FileSet::Above::require);
+    tradeoff::ProjectionFolder folder = options.folder;
+    useCache(folder, listener);
     const CandidateSource source{*brdf, named, nameOf(spec)};
     choice::ChoiceOptions how{.renderer = std::string(renderer.name),
                               .kinds = renderer.kinds,
@@ -88,7 +94,7 @@ choice::Choice choose(const std::string& spec, const std::string& output,
                                  row.made.bytes, row.picture.flip.mean));
     };
     choice::Choice chosen =
-        choice::choose(*brdf, candidatesFor(source, renderer, options.kinds), how);
+        choice::choose(*brdf, candidatesFor(source, renderer, options.kinds, folder), how);
     if (!chosen.recommended) stateExitCode(static_cast<int>(ExitCode::numeric));
     if (files) writeChoice(chosen, *brdf, *files);
     return chosen;

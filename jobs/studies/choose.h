@@ -4,6 +4,7 @@
 #include <jobs/common/option_row.h>
 
 #include <hshfit/choice/choice.h>
+#include <hshfit/tradeoff/projection_folder.h>
 
 #include <optional>
 #include <string>
@@ -18,6 +19,7 @@ struct ChooseOptions {
     std::optional<std::size_t> cost = {};   ///< cycles at most: choice::ChoiceOptions::cycles
     std::optional<double> error = {};       ///< mean FLIP at most; none: PoorBounds::flip
     double seconds = choice::ChoiceOptions{}.cpuSeconds;  ///< of the processor, of all candidates
+    tradeoff::ProjectionFolder folder = {};               ///< projections of earlier runs
 };
 OptionRows<ChooseOptions> chooseOptions();
 

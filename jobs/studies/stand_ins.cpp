@@ -8,7 +8,7 @@
 #include <hshfit/files/temporary_file.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/representation/halfway/halfway_terms.h>
-#include <hshfit/tradeoff/projection_cache.h>
+#include <hshfit/tradeoff/kept_projections.h>
 #include <hshfit/tradeoff/sweep.h>
 #include <hshfit/wording.h>
 
@@ -19,7 +19,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <set>
 #include <utility>
 
 namespace hshfit::jobs {
@@ -28,6 +27,9 @@ namespace {
 using choice::Candidate;
 using choice::Made;
 using Kind = Representation::Kind;
+
+/// Brdf::defaultTolerance of models; interpolated tables have a looser one.
+constexpr double smoothTolerance = 1e-6;
 
 Made converted(const CandidateSource& source) {
     const std::string file = source.name + ".bsdf";
@@ -64,12 +66,14 @@ std::string formName(const Form& form) {
     return fmt::format("{} of order {}{}", form.basis, form.order, where) + precision;
 }
 
-/// Candidate::seconds: fits of the halfway form grow with its terms, and two precisions share one;
-/// anisotropic BRDFs have more terms and directions.
-double secondsOf(const Form& form, bool isotropic) {
-    const double seconds =
-        form.kind == Kind::halfway ? 0.05 * form.halfway.half * form.halfway.half : 3;
-    return isotropic ? seconds : 4 * seconds;
+/// Candidate::seconds: fits of the halfway form grow with its terms; anisotropic BRDFs have more
+/// terms and directions. Matrices of tables converge slowly, if they do.
+double secondsOf(const Form& form, const Brdf& brdf) {
+    const double fit = 0.09 * form.halfway.half * form.halfway.half;
+    const bool table = brdf.defaultTolerance() > smoothTolerance;
+    const double matrix = table ? 10 : 2;
+    const double seconds = form.kind == Kind::halfway ? fit : form.kind == Kind::basis ? matrix : 1;
+    return brdf.laws().isotropic ? seconds : 4 * seconds;
 }
 
 /// The forms that are tried: of the halfway form few functions and many, in half and in bytes;
@@ -105,15 +109,19 @@ std::vector<Form> formsFor(const Brdf& brdf) {
 /// The projections of all forms, each made when the first form asks for it.
 class FormMaker {
 public:
-    explicit FormMaker(const CandidateSource& source)
-        : source_(source), cache_(source.brdf, {.tolerance = toleranceOf(source.brdf)}) {}
+    FormMaker(const CandidateSource& source, const std::vector<Form>& forms,
+              const tradeoff::ProjectionFolder& folder)
+        : source_(source),
+          kept_(source.brdf, {.projection = {.tolerance = toleranceOf(source.brdf)},
+                              .folder = &folder,
+                              .specification = source.spec}) {
+        kept_.expect(forms);
+    }
+
+    bool hasProjected(const Form& form) const { return kept_.isMade(form); }
 
     Made make(const Form& form, const std::string& target) {
-        if (prepared_.insert(optionsOf(projectionOf(form))).second) {
-            const Form alone = projectionOf(form);
-            cache_.prepare({&alone, 1}, [] {});
-        }
-        Representation representation = represent(cache_, form);
+        Representation representation = represent(kept_, form);
         representation.head.source = source_.spec;
         const std::string file = source_.name + ".json";
         std::vector<Setting> settings = settingsOf(form);
@@ -139,13 +147,8 @@ public:
 private:
     /// A hundredth is far below what few bands leave out.
     static double toleranceOf(const Brdf& brdf) { return std::max(brdf.defaultTolerance(), 0.01); }
-    static Form projectionOf(Form form) {
-        form.precision = Precision::float64;
-        return form;
-    }
     const CandidateSource& source_;
-    tradeoff::ProjectionCache cache_;
-    std::set<std::string> prepared_;
+    tradeoff::KeptProjections kept_;
 };
 
 }  // namespace
@@ -160,13 +163,17 @@ Candidate bsdfCandidate(const CandidateSource& source) {
             }};
 }
 
-std::vector<Candidate> formCandidates(const CandidateSource& source, const std::string& target) {
-    const auto maker = std::make_shared<FormMaker>(source);
+std::vector<Candidate> formCandidates(const CandidateSource& source, const std::string& target,
+                                      const tradeoff::ProjectionFolder& folder) {
+    const std::vector<Form> forms = formsFor(source.brdf);
+    const auto maker = std::make_shared<FormMaker>(source, forms, folder);
     std::vector<Candidate> candidates;
-    for (const Form& form : formsFor(source.brdf))
-        candidates.push_back({form.kind == Kind::halfway ? "halfway" : "coefficients",
-                              formName(form), [=] { return maker->make(form, target); },
-                              secondsOf(form, source.brdf.laws().isotropic)});
+    for (const Form& form : forms)
+        candidates.push_back({.kind = form.kind == Kind::halfway ? "halfway" : "coefficients",
+                              .name = formName(form),
+                              .make = [=] { return maker->make(form, target); },
+                              .seconds = secondsOf(form, source.brdf),
+                              .isHalfMade = [=] { return maker->hasProjected(form); }});
     return candidates;
 }
 

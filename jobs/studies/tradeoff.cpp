@@ -2,6 +2,7 @@
 
 #include <jobs/common/pair_file.h>
 #include <jobs/exports/formula_candidates.h>
+#include <jobs/exports/projection_cache.h>
 #include <jobs/source/source.h>
 
 #include <hshfit/error.h>
@@ -72,6 +73,8 @@ void measureAll(MeasuredTradeoffs& result, const TradeoffOptions& options, FileS
     const PairSample pairs = pairsFor(options);
     const auto open = [](const std::string& spec) { return openBrdf(spec); };
     const TimeLimit limit(options.seconds);
+    tradeoff::ProjectionFolder folder = options.measurement.folder;
+    useCache(folder, listener);
     for (const std::string& spec : result.specs) {
         try {
             const auto brdf = openBrdf(spec, options.rgb);
@@ -80,6 +83,7 @@ void measureAll(MeasuredTradeoffs& result, const TradeoffOptions& options, FileS
                              pairsCsv(pairs, *brdf));
             }
             tradeoff::TradeoffOptions how = measurementOf(options);
+            how.folder = folder;
             const std::string named = options.rgb ? "rgb:" + spec : spec;
             how.formulas = formulaCandidates({*brdf, named, nameOf(spec)}, options.formulas);
             how.progress = listener.part(spec);

@@ -5,6 +5,7 @@
 
 #include <jobs/common/option_words.h>
 #include <jobs/common/shared_options.h>
+#include <jobs/exports/projection_cache.h>
 
 namespace hshfit::jobs {
 namespace {
@@ -52,6 +53,8 @@ constexpr OptionRow tradeoffRows[] = {
               "End the measurements after that time with the forms so far; a quarter of it is for "
               "times of evaluation, without --no-timing"}
         .within(bounds::seconds),
+    cacheRow(at<&TradeoffOptions::measurement, &tradeoff::TradeoffOptions::folder,
+                &tradeoff::ProjectionFolder::path>),
     OptionRow{"wavelets", at<&TradeoffOptions::measurement, &tradeoff::TradeoffOptions::wavelets>,
               "Measure the best terms of SOHO wavelets too, for comparison"},
     rgbRow(at<&TradeoffOptions::rgb>),
@@ -83,6 +86,7 @@ constexpr OptionRow chooseRows[] = {
               "Seconds of the processor for all candidates: one that would exceed them is left "
               "out, with that reason"}
         .within(bounds::seconds),
+    cacheRow(at<&ChooseOptions::folder, &tradeoff::ProjectionFolder::path>),
 };
 
 constexpr OptionRow stressRows[] = {

@@ -725,6 +725,7 @@ def plan(
     formulas: Names = ...,
     by_time: bool = ...,
     seconds: Optional[float] = ...,
+    cache: Optional[Path] = ...,
     progress: Progress = ...,
 ) -> Row: ...
 def choose(
@@ -737,6 +738,7 @@ def choose(
     cost: Optional[int] = ...,
     error: Optional[float] = ...,
     seconds: float = ...,
+    cache: Optional[Path] = ...,
     progress: Progress = ...,
 ) -> Row: ...
 def ltc(
@@ -801,6 +803,7 @@ def tradeoff(
     pairs: Optional[Path] = ...,
     write_pairs: Optional[Path] = ...,
     seconds: Optional[float] = ...,
+    cache: Optional[Path] = ...,
     wavelets: bool = ...,
     rgb: bool = ...,
     tolerance: float = ...,

@@ -21,6 +21,46 @@ double processorSeconds() {
     return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
+/// Seconds of a formula's fit that is slow, and of any candidate whose long part is done.
+constexpr double slowFit = 10, halfMade = 1;
+/// The FLIP of the quick formulas, in bounds of faithful ones, beyond which a slow one is tried
+/// last, and how many times as long its fit goes on there.
+constexpr double farOff = 2, longer = 4;
+
+/// The candidates that are left, and the next of them.
+class Queue {
+public:
+    Queue(std::vector<Candidate> candidates, double bound)
+        : left_(std::move(candidates)), bound_(bound) {}
+
+    bool isEmpty() const { return left_.empty(); }
+    /// In their order, but slow fits of formulas last where quick ones are far off.
+    Candidate next() {
+        const bool areFar = std::isfinite(nearest_) && nearest_ > farOff * bound_;
+        const auto waits = [&](const Candidate& candidate) {
+            return areFar && candidate.isFormula && candidate.seconds >= slowFit;
+        };
+        auto place = std::ranges::find_if_not(left_, waits);
+        if (place == left_.end()) place = left_.begin();
+        Candidate candidate = std::move(*place);
+        left_.erase(place);
+        if (waits(candidate)) candidate.seconds *= longer;
+        return candidate;
+    }
+    void measured(const Candidate& candidate, double flip) {
+        if (candidate.isFormula) nearest_ = std::min(nearest_, flip);
+    }
+
+private:
+    std::vector<Candidate> left_;
+    double bound_;
+    double nearest_ = std::numeric_limits<double>::infinity();  ///< FLIP of formulas
+};
+
+double secondsFor(const Candidate& candidate) {
+    return candidate.isHalfMade && candidate.isHalfMade() ? halfMade : candidate.seconds;
+}
+
 /// Why the renderer or the bounds do not take a row; empty: they do.
 std::string unfitReason(const Row& row, const ChoiceOptions& options) {
     const std::vector<std::string>& kinds = options.kinds;
@@ -104,20 +144,23 @@ Choice choose(const Brdf& source, std::vector<Candidate> candidates, const Choic
                   .noCosts = noCosts};
     if (costs) choice.costs = {costs->device(), costs->ggx()};
     std::optional<Row*> best;
-    choice.rows.reserve(candidates.size());
-    for (std::size_t k = 0; k < candidates.size(); ++k) {
-        const Candidate& candidate = candidates[k];
-        if (options.progress) options.progress(k, candidates.size());
-        const double spent = processorSeconds() - begin;
-        if (spent + candidate.seconds > options.cpuSeconds) {
+    const std::size_t count = candidates.size();
+    choice.rows.reserve(count);
+    Queue queue(std::move(candidates), bounds.flip);
+    for (std::size_t k = 0; !queue.isEmpty(); ++k) {
+        const Candidate candidate = queue.next();
+        if (options.progress) options.progress(k, count);
+        const double spent = processorSeconds() - begin, seconds = secondsFor(candidate);
+        if (spent + seconds > options.cpuSeconds) {
             choice.leftOut.push_back(
                 {candidate.kind, candidate.name,
-                 fmt::format("about {:g} seconds of the processor; {:.0f} of {:g} are spent",
-                             candidate.seconds, spent, options.cpuSeconds)});
+                 fmt::format("about {:.2g} seconds of the processor; {:.0f} of {:g} are spent",
+                             seconds, spent, options.cpuSeconds)});
             continue;
         }
         try {
             Row& row = choice.rows.emplace_back(measurement.rowOf(candidate));
+            queue.measured(candidate, row.picture.flip.mean);
             row.unfit = unfitReason(row, options);
             if (!isFaithful(row) || (best && !isBetter(row, **best))) continue;
             best = &row;

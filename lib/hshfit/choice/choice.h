@@ -45,7 +45,8 @@ struct Choice {
 /// Fewer bytes than that are as good as none: a line of a processor's cache.
 inline constexpr std::size_t smallestBytes = 128;
 
-/// Makes and measures the candidates in their order, by the picture error.
+/// Makes and measures the candidates by the picture error, in their order, but slow fits of
+/// formulas last where quick ones are far from faithful.
 ///
 /// Recommended is, of the rows that the renderer takes within the bounds and that are not poor, the
 /// one of fewest bytes, where `smallestBytes` and less count alike; of equal ones that of the least

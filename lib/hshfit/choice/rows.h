@@ -36,6 +36,9 @@ struct Candidate {
     std::string name;            ///< for people: "halfway 7,6,5 in half"
     std::function<Made()> make;  ///< may throw an Error: the candidate is then left out
     double seconds = 3;          ///< of the processor that it takes, about
+    /// Whether its long part is done, for another candidate; empty: it is not.
+    std::function<bool()> isHalfMade = {};
+    bool isFormula = false;  ///< a fit of a formula: far off where others of these are
 };
 
 /// A candidate and its distance from the source to the eye.

@@ -147,13 +147,24 @@ Choice MaterialSearch::shownChoice(const Rung& rung, double error) {
     return choice;
 }
 
+Representation MaterialSearch::fileOf(const Rung& rung) {
+    const Version& version = versions_[rung.source];
+    Part& part = partOf(rung);
+    // A fit asks for no tolerance: the search's own is the file's.
+    if (rung.form.kind == Representation::Kind::halfway)
+        return represent(*part.kept, rung.form, part.added);
+    tradeoff::KeptProjections finer(
+        part.kept->remainder(),
+        keeping(version, rung.form.split, {.tolerance = toleranceOf(rung.form)}));
+    return represent(finer, rung.form, part.added);
+}
+
 std::optional<Accepted> MaterialSearch::accept(const Rung& rung) {
     const Version& version = versions_[rung.source];
     std::optional<double>& known = errors_[keyOf(rung)];
     Accepted result{.choice = choiceOf(rung, 0), .representation = {}};
     try {
-        result.representation =
-            represent(*version.brdf, rung.form, open_, {.tolerance = toleranceOf(rung.form)});
+        result.representation = fileOf(rung);
     } catch (const NumericError& failure) {
         lastFailure_ = failure.what();
         known.reset();

@@ -22,6 +22,8 @@ constexpr int lightOrder = 24, lightLevel = 4;
 constexpr std::size_t mostFloorViews = 48;
 /// The ratio of the budget to the tolerance of projections for choosing.
 constexpr double projectionShare = 20;
+/// Evaluations of f per direction at most, which are few because these are only for a search.
+constexpr std::size_t mostEvaluations = std::size_t{1} << 22;
 
 /// A version of one channel may take up to this share of the budget.
 constexpr double oneChannelShare = 0.8;
@@ -94,10 +96,22 @@ void MaterialSearch::addPart(Version& version, const std::string& split) {
         part.addedRadiance = light_->radianceOf(*open_(part.added));
     }
     const Brdf& remainder = part.remainder ? *part.remainder : *version.brdf;
-    part.kept = std::make_unique<KeptProjections>(
-        remainder, ladderOptions_,
-        std::max(plan_.material.budget.error / projectionShare, version.brdf->defaultTolerance()));
+    tradeoff::KeepOptions how = keeping(
+        version, split,
+        {.tolerance = std::max({plan_.material.budget.error / projectionShare,
+                                version.brdf->defaultTolerance(), remainder.defaultTolerance()}),
+         .maxEvaluations = mostEvaluations});
+    how.bases = ladderOptions_.bases;
+    how.maxOrder = ladderOptions_.maxOrder;
+    part.kept = std::make_unique<tradeoff::KeptProjections>(remainder, std::move(how));
     version.parts.emplace(split, std::move(part));
+}
+
+tradeoff::KeepOptions MaterialSearch::keeping(const Version& version, const std::string& split,
+                                              const ProjectionOptions& projection) const {
+    return {.projection = projection,
+            .folder = &options_.folder,
+            .specification = version.spec + "\n" + split};
 }
 
 /// Adds a version of one channel if all lit channels agree within the budget.

@@ -6,6 +6,7 @@
 #include <hshfit/plan/seen_surfaces.h>
 #include <hshfit/representation/forms/form.h>
 #include <hshfit/scene/scene.h>
+#include <hshfit/tradeoff/projection_folder.h>
 
 #include <functional>
 #include <optional>
@@ -87,6 +88,7 @@ struct PlanOptions {
     bool costs = false;  ///< state what shaders cost on an AMD GPU (gpu::ShaderCosts)
     std::vector<std::string> formulas = {"model", "lobes"};  ///< kinds to measure beside the forms
     FormulaMaker makeFormulas = {};                          ///< none: no formulas
+    tradeoff::ProjectionFolder folder = {};                  ///< projections of earlier runs
     bool byTime = false;  ///< measure nanoseconds and choose the fastest form within the budget
     /// For the searches together. A large halfway form is made after it where none was found.
     std::optional<double> seconds = {};

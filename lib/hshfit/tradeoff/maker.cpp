@@ -2,6 +2,8 @@
 
 #include <hshfit/error.h>
 
+#include <utility>
+
 namespace hshfit::tradeoff {
 namespace {
 
@@ -23,32 +25,32 @@ void Maker::prepare(const std::vector<Form>& forms, const TimeLimit& limit,
             part.failure = error.what();
             continue;
         }
-        part.cache->prepare(list, done, limit);
+        part.kept->prepare(list, done, limit);
     }
 }
 
 std::size_t Maker::projectionsFor(const std::vector<Form>& forms) {
     std::size_t sum = 0;
-    for (const auto& [name, list] : bySplit(forms)) sum += ProjectionCache::projectionsFor(list);
+    for (const auto& [name, list] : bySplit(forms)) sum += KeptProjections::projectionsFor(list);
     return sum;
 }
 
 Representation Maker::make(const Form& form) const {
     const Part& part = partOf(form);
-    Representation result = represent(*part.cache, form, part.split.added);
+    Representation result = represent(*part.kept, form, part.split.added);
     result.head.source = brdf_.name();
     return result;
 }
 
 void Maker::prepareOne(const std::string& name, Part& part) const {
-    if (name.empty()) {
-        part.cache = std::make_unique<ProjectionCache>(brdf_, projection_);
-        return;
+    KeepOptions how{
+        .projection = projection_, .folder = &folder_, .specification = brdf_.name() + "\n" + name};
+    if (!name.empty()) {
+        part.split = takeOut(brdf_, name, open_);
+        if (projection_.tolerance == 0) how.projection.tolerance = brdf_.defaultTolerance();
     }
-    part.split = takeOut(brdf_, name, open_);
-    ProjectionOptions projection = projection_;
-    if (projection.tolerance == 0) projection.tolerance = brdf_.defaultTolerance();
-    part.cache = std::make_unique<ProjectionCache>(*part.split.remainder, projection);
+    const Brdf& brdf = name.empty() ? brdf_ : *part.split.remainder;
+    part.kept = std::make_unique<KeptProjections>(brdf, std::move(how));
 }
 
 const Maker::Part& Maker::partOf(const Form& form) const {

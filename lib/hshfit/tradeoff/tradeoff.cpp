@@ -397,13 +397,13 @@ Tradeoff measure(const Brdf& brdf, PairSample pairs, const TradeoffOptions& opti
     Finds finds(options, trade.brdf);
     if (options.found) {
         const Form& form = firstForm(forms);
-        Maker maker(brdf, options.projection, open);
+        Maker maker(brdf, options.projection, options.folder, open);
         maker.prepare({form}, {}, [] {});
         finds.add(measureOne(form, maker, reference, pictures, options, open));
     }
     boundByRank(trade, brdf, options.sweep.quantity);
     const TimeLimit limit = options.limit.share(options.timing ? 4.0 / 3 : 1);
-    Maker maker(brdf, options.projection, open);
+    Maker maker(brdf, options.projection, options.folder, open);
     maker.prepare(forms, limit.share(4), [&] { steps.done(); });
 
     std::vector<Outcome> outcomes(forms.size());

@@ -6,6 +6,7 @@
 #include <hshfit/gpu/timing/shader_time.h>
 #include <hshfit/pictures/picture_error.h>
 #include <hshfit/time_limit.h>
+#include <hshfit/tradeoff/projection_folder.h>
 #include <hshfit/tradeoff/sweep.h>
 #include <hshfit/tradeoff/timing.h>
 #include <hshfit/tradeoff/wavelet_forms.h>
@@ -37,6 +38,7 @@ struct TradeoffOptions {
     bool wavelets = false;  ///< measure the best terms of spherical wavelets too
     bool byTime = false;    ///< the choice is the knee over time instead of that over bytes
     ProjectionOptions projection = {};
+    ProjectionFolder folder = {};  ///< projections of earlier runs
     /// Called with steps done and in all, from any thread.
     std::function<void(std::size_t, std::size_t)> progress = {};
     /// Forms that are not reached are left out; a quarter of the time is for times, if they are

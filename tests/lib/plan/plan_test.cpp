@@ -6,9 +6,9 @@
 #include <hshfit/light/picture_light.h>
 #include <hshfit/plan/internal/ladder.h>
 #include <hshfit/plan/internal/material_light.h>
-#include <hshfit/plan/internal/projections.h>
 #include <hshfit/plan/plan_files.h>
 #include <hshfit/representation/forms/represented_brdf.h>
+#include <hshfit/tradeoff/kept_projections.h>
 
 #include <brdfs/catalog.h>
 
@@ -257,7 +257,9 @@ TEST(Ladder, RisesByTheBytesThatFormsReallyTake) {
         for (std::size_t i = 1; i < rungs.size(); ++i) {
             EXPECT_LE(rungs[i - 1].bytes, rungs[i].bytes);
         }
-        KeptProjections kept(*brdf, options, 1e-2);
+        tradeoff::KeptProjections kept(*brdf, {.projection = {.tolerance = 1e-2},
+                                               .bases = options.bases,
+                                               .maxOrder = options.maxOrder});
         std::size_t looked = 0;
         for (std::size_t i = 0; i < rungs.size(); i += rungs.size() / 40 + 1) {
             if (rungs[i].form.outgoing.size() > 3) continue;  // large maps take long

@@ -10,7 +10,7 @@
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/representation/named_arrays.h>
 #include <hshfit/tradeoff/internal/front.h>
-#include <hshfit/tradeoff/projection_cache.h>
+#include <hshfit/tradeoff/kept_projections.h>
 #include <hshfit/tradeoff/tradeoff_files.h>
 
 #include <gtest/gtest.h>
@@ -310,10 +310,10 @@ TEST(Cache, DerivedFormsEqualDirectProjections) {
             forms.push_back(form);
         }
     }
-    ProjectionCache cache(f, {});
+    KeptProjections cache(f, {});
     int projections = 0;
     cache.prepare(forms, [&] { ++projections; });
-    EXPECT_EQ(static_cast<std::size_t>(projections), ProjectionCache::projectionsFor(forms));
+    EXPECT_EQ(static_cast<std::size_t>(projections), KeptProjections::projectionsFor(forms));
     EXPECT_LT(static_cast<std::size_t>(projections), forms.size());
     for (const Form& form : forms) {
         const Representation direct = represent(f, form, openNothing);

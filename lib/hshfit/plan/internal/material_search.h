@@ -1,9 +1,10 @@
 #pragma once
 
+#include <hshfit/plan/internal/ladder.h>
 #include <hshfit/plan/internal/material_light.h>
-#include <hshfit/plan/internal/projections.h>
 #include <hshfit/plan/plan.h>
 #include <hshfit/time_limit.h>
+#include <hshfit/tradeoff/kept_projections.h>
 
 #include <map>
 #include <memory>
@@ -29,7 +30,7 @@ private:
     struct Part {
         std::string added;                ///< as in Representation
         std::unique_ptr<Brdf> remainder;  ///< none: the version itself
-        std::unique_ptr<KeptProjections> kept;
+        std::unique_ptr<tradeoff::KeptProjections> kept;
         std::vector<Radiance> addedRadiance;  ///< for each orientation; empty: none
         std::map<std::string, std::vector<double>> floor = {};  ///< [order - 1] by basis, quantity
     };
@@ -42,6 +43,9 @@ private:
 
     void addVersion(std::string spec, std::unique_ptr<Brdf> brdf);
     void addPart(Version& version, const std::string& split);
+    /// For projections of a version without what is split off.
+    tradeoff::KeepOptions keeping(const Version& version, const std::string& split,
+                                  const ProjectionOptions& projection) const;
     void considerOneChannel();
     void describeLight();
     /// The least order beyond which the light's bands change L by less than a quarter of the
@@ -70,7 +74,9 @@ private:
     Choice choiceOf(const Rung& rung, double error) const;
     /// The choice with its FLIP, if the budget bounds it.
     Choice shownChoice(const Rung& rung, double error);
-    /// Projects as the command does and verifies by lattice points; none if verification fails.
+    /// As the command makes it.
+    Representation fileOf(const Rung& rung);
+    /// Makes the file and verifies by lattice points; none if verification fails.
     std::optional<Accepted> accept(const Rung& rung);
 
     std::optional<std::size_t> firstWithin(std::size_t from);
