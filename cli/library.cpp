@@ -287,10 +287,10 @@ void runExport(const LibraryArguments& arguments, const Globals& globals) {
     jobs::LibraryExportOptions options = arguments.options.exporting;
     options.force = globals.force;
     const jobs::ExportedLibrary exported =
-        jobs::exportLibrary(arguments.inputs[0], arguments.output, options);
+        jobs::exportLibrary(arguments.inputs[0], arguments.output, options, listenerFor(globals));
     std::vector<std::string> files;
     for (const gpu::ExportedFile& file : exported.textures) files.push_back(file.path);
-    files.insert(files.end(), exported.shaders.begin(), exported.shaders.end());
+    files.insert(files.end(), exported.texts.begin(), exported.texts.end());
     if (globals.json) {
         Json document = headOf(arguments);
         document["materials"] = exported.materials;

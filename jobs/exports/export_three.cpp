@@ -2,29 +2,25 @@
 
 #include "look_ups.h"
 
+#include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
 #include <hshfit/files/json_fields.h>
-#include <hshfit/gpu/three/three_files.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <atomic>
 #include <filesystem>
 
 namespace hshfit::jobs {
 namespace {
 
-gpu::ThreeLookUps threeLookUps(const Brdf& brdf, const std::string& prefix,
-                               const std::string& name) {
-    const LookUps made = lookUpsOf(brdf, "three", prefix, name);
-    const lighting::ElevationTable& table = made.fitted.table;
+/// Lookups without their texels.
+gpu::ThreeLookUps shadersOf(const LookUps& made) {
     gpu::ThreeLookUps lookUps{
         .wgsl = lighting::lightingShaderSource(gpu::Language::wgsl, made.shader),
         .glsl = lighting::lightingShaderSource(gpu::Language::glslEs, made.shader),
-        .texels = {table.values.begin(), table.values.end()},
-        .width = table.texels,
-        .height = table.height(),
-        .along = table.azimuths.count > 1};
+        .along = made.fitted.table.azimuths.count > 1};
     for (const std::vector<double>& bands : lighting::levelBands(*made.fitted.engine, 3)) {
         lookUps.first.push_back(bands[1]);
         lookUps.second.push_back(bands[2]);
@@ -32,7 +28,55 @@ gpu::ThreeLookUps threeLookUps(const Brdf& brdf, const std::string& prefix,
     return lookUps;
 }
 
+gpu::ThreeLookUps threeLookUps(const Brdf& brdf, const std::string& prefix,
+                               const std::string& name) {
+    const LookUps made = lookUpsOf(brdf, "three", prefix, name);
+    const lighting::ElevationTable& table = made.fitted.table;
+    gpu::ThreeLookUps lookUps = shadersOf(made);
+    lookUps.texels = gpu::encode(table.values, static_cast<int>(table.texels),
+                                 static_cast<int>(table.height()), 1, gpu::Number::float32);
+    return lookUps;
+}
+
 }  // namespace
+
+gpu::ThreeLookUps threeLookUps(std::size_t materials,
+                               const std::function<std::unique_ptr<Brdf>(std::size_t)>& open,
+                               const std::string& prefix, const std::string& name,
+                               const ProgressCall& progress) {
+    std::vector<LookUps> made(materials);
+    std::atomic<std::size_t> done = 0;
+    eachInParallel(materials, [&](std::size_t n) {
+        made[n] = lookUpsOf(*open(n), "three", prefix, name);
+        if (progress) progress(++done, materials);
+    });
+    made.front().shader.materials = true;
+    gpu::ThreeLookUps lookUps = shadersOf(made.front());
+    std::vector<double> rows;
+    for (const LookUps& one : made) {
+        const std::vector<double>& values = one.fitted.table.values;
+        rows.insert(rows.end(), values.begin(), values.end());
+    }
+    lookUps.texels = gpu::encode(rows, static_cast<int>(rows.size() / (4 * materials)),
+                                 static_cast<int>(materials), 1, gpu::Number::float16);
+    return lookUps;
+}
+
+std::vector<std::string> writeThreeFiles(std::span<const gpu::TextFile> made, bool force,
+                                         const Listener& listener, FileSet& files) {
+    std::vector<std::string> paths;
+    for (const gpu::TextFile& file : made) {
+        std::error_code ignored;
+        const bool package = file.path == "package.json";
+        if (package && !force && std::filesystem::exists(files.folder() / file.path, ignored)) {
+            listener.say("package.json is there already and stays as it is");
+            continue;
+        }
+        files.write(file.path, file.text);
+        paths.push_back(file.path);
+    }
+    return paths;
+}
 
 void writeThree(const Brdf& brdf, const ExportOptions& options, const Listener& listener,
                 FileSet& files, Exported& exported) {
@@ -55,17 +99,8 @@ void writeThree(const Brdf& brdf, const ExportOptions& options, const Listener& 
         listener.say(fmt::format("left out: {}", error.what()));
         return;
     }
-    for (const gpu::TextFile& file : made) {
-        std::error_code ignored;
-        const bool package = file.path == "package.json";
-        if (package && !options.force &&
-            std::filesystem::exists(files.folder() / file.path, ignored)) {
-            listener.say("package.json is there already and stays as it is");
-            continue;
-        }
-        files.write(file.path, file.text);
-        exported.texts.push_back({"module", "three", file.path});
-    }
+    for (const std::string& path : writeThreeFiles(made, options.force, listener, files))
+        exported.texts.push_back({"module", "three", path});
 }
 
 }  // namespace hshfit::jobs

@@ -1,5 +1,7 @@
 #include "library_export.h"
 
+#include <jobs/exports/export_three.h>
+
 #include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
 #include <hshfit/files/file_set.h>
@@ -160,11 +162,27 @@ std::vector<const gpu::Target*> targetsOf(const std::string& names) {
             chosen.push_back(target);
         else if (names != "all")
             throw UsageError(fmt::format(
-                "a library is no '{}': it is containers and shaders but OSL's; give a material, "
-                "LIBRARY:NAME, to export",
+                "a library is no '{}': it is containers, shaders but OSL's, and three; give a "
+                "material, LIBRARY:NAME, to export",
                 target->name));
     }
     return chosen;
+}
+
+/// The files of three.js.
+void addThree(const ml::Library& library, const gpu::SharedSums& sums,
+              const LibraryExportOptions& options, const Listener& listener, FileSet& files,
+              ExportedLibrary& exported) {
+    const gpu::ThreeOptions three{
+        .name = exported.name,
+        .shader = {.prefix = options.prefix},
+        .lookUps = threeLookUps(
+            sums.count(), [&](std::size_t n) { return brdfOf(library, exported, sums, n); },
+            options.prefix, exported.name, listener.part("lookups")),
+        .fitError = exported.table ? jsonText(tableJson(*exported.table)["error"]) : ""};
+    const auto made = gpu::threeFiles(sums, exported.materials, three);
+    for (std::string& path : writeThreeFiles(made, options.force, listener, files))
+        exported.texts.push_back(std::move(path));
 }
 
 }  // namespace
@@ -181,11 +199,12 @@ Json tableJson(const ExportedTable& table) {
 
 bool holdsLibrary(const gpu::Target& target) {
     using Kind = gpu::Target::Kind;
-    return target.kind == Kind::container || (target.kind == Kind::shader && target.name != "osl");
+    return target.kind == Kind::container || target.name == "three" ||
+           (target.kind == Kind::shader && target.name != "osl");
 }
 
 ExportedLibrary exportLibrary(const std::string& path, const std::string& folder,
-                              const LibraryExportOptions& options) {
+                              const LibraryExportOptions& options, const Listener& listener) {
     const std::vector<const gpu::Target*> targets = targetsOf(options.targets);
     const ml::Library library = ml::readLibrary(path);
     ExportedLibrary exported;
@@ -225,18 +244,20 @@ ExportedLibrary exportLibrary(const std::string& path, const std::string& folder
          .tests = gpu::readableSidecar(jsonText(
              Json{{"format", "hshfit-gpu-library-test"}, {"version", 1}, {"tests", tests}}))},
         containers, exported.name, false, files);
+    const auto wanted = [&](std::string_view name) {
+        return std::ranges::any_of(targets,
+                                   [&](const gpu::Target* target) { return target->name == name; });
+    };
     for (const gpu::LanguageEntry& language : gpu::languages()) {
-        const bool wanted = std::ranges::any_of(targets, [&](const gpu::Target* target) {
-            return target->kind == gpu::Target::Kind::shader && target->name == language.name;
-        });
-        if (!wanted) continue;
+        if (!wanted(language.name)) continue;
         const std::string file = gpu::shaderFileName(exported.name, language, options.prefix);
         files.write(file,
                     gpu::fileText(language.language,
                                   gpu::libraryShaderSource(language.language, sums, options.prefix),
                                   std::filesystem::path(file).stem().string()));
-        exported.shaders.push_back(file);
+        exported.texts.push_back(file);
     }
+    if (wanted("three")) addThree(library, sums, options, listener, files, exported);
     files.commit();
     return exported;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <jobs/common/listener.h>
+
 #include <hshfit/gpu/containers/containers.h>
 #include <hshfit/gpu/containers/targets.h>
 #include <hshfit/gpu/forms/library_table.h>
@@ -25,7 +27,7 @@ struct LibraryExportOptions {
     bool force = false;
 };
 
-/// Whether a library can be this target: containers, and shaders but OSL's.
+/// Whether a library can be this target: containers, shaders but OSL's, and three.js.
 bool holdsLibrary(const gpu::Target& target);
 
 /// A table of functions, and what f loses by it.
@@ -50,15 +52,16 @@ struct ExportedLibrary {
     std::size_t bytes = 0;               ///< of the texels of one material
     std::optional<ExportedTable> table;  ///< none: the functions stand in the shaders
     std::vector<gpu::ExportedFile> textures;
-    std::vector<std::string> shaders;
+    std::vector<std::string> texts;  ///< shaders and modules
 };
 
 /// Writes one shader for all materials that a library has in its basis, and their numbers as
 /// texels: NAME_hsh.glsl and so on, NAME.coef.…, NAME.basis.… with the table of the functions,
-/// NAME.hsh.json (which names the materials) and NAME_test.json, NAME being the library's. Throws
-/// InputError for a library without a basis or without a material in it, UsageError for targets
-/// that a library has not, NumericError as gpu::tabledWithin does, OutputError.
+/// NAME.hsh.json (which names the materials) and NAME_test.json, NAME being the library's; for
+/// three.js also gpu::threeFiles, with lookups that are fitted to each material. Throws InputError
+/// for a library without a basis or without a material in it, UsageError for targets that a library
+/// has not, NumericError as gpu::tabledWithin does, OutputError.
 ExportedLibrary exportLibrary(const std::string& path, const std::string& folder,
-                              const LibraryExportOptions& options);
+                              const LibraryExportOptions& options, const Listener& listener = {});
 
 }  // namespace hshfit::jobs

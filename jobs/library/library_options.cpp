@@ -97,8 +97,8 @@ constexpr OptionRow libraryRows[] = {
         .onlyFor(of::next),
     OptionRow{
         "target", at<&LibraryOptions::exporting, &LibraryExportOptions::targets>,
-        "export: shaders (glsl, glsl-es, hlsl, slang, metal, wgsl) and containers of texels (bin, "
-        "dds, exr, ktx2, …), with commas, or all"}
+        "export: three (a material for three.js), shaders (glsl, glsl-es, hlsl, slang, metal, "
+        "wgsl) and containers of texels (bin, dds, exr, ktx2, …), with commas, or all"}
         .takes({libraryTargetWords, Syntax::list})
         .inPython("targets")
         .onlyFor(of::exported),

@@ -26,16 +26,24 @@ import { DataTexture, LightProbe, Mesh, SphereGeometry, Vector3 } from 'three';
 import { environmentFromProbe, facts, HshfitMaterial, material, studio } from 'hshfit-ward';
 import { material as nodeMaterial } from 'hshfit-ward/webgpu';
 import { material as form } from 'hshfit-ggx';
+import { material as ofLibrary, materialNumber, materials } from 'hshfit-atlas';
+import { HshfitNodeMaterial as Atlas } from 'hshfit-atlas/webgpu';
 const one: HshfitMaterial = material({ tangents: true, axis: new Vector3(0, 0, 1), side: 2 });
 one.setEnvironment(studio).setEnvironment(environmentFromProbe(new LightProbe()));
 new Mesh(new SphereGeometry(), nodeMaterial({ axis: [0, 1, 0], environment: null }));
 form().setEnvironment(null).setEnvironmentMap(new DataTexture());
 const bytes: number = facts.bytes;
+const two = ofLibrary({ materialIndex: materials[1], side: 2 });
+two.materialIndex = 'lambert';
+const index: number = two.materialIndex + new Atlas({ indices: true }).materialIndex + materialNumber('ggx');
+console.log(index);
 console.log(bytes);
 `;
 const bad = [
   ["import { material } from 'hshfit-ward'; material({ tangents: 'yes' });", 'a wrong type'],
   ["import { material } from 'hshfit-ward'; material().setSurroundings(null);", 'no such function'],
+  ["import { material } from 'hshfit-atlas'; material({ axis: [0, 1, 0] });", 'an option of other materials'],
+  ["import { material } from 'hshfit-atlas'; material().materialIndex = null;", 'no material'],
   ["import { nothing } from 'hshfit-ward/webgpu'; console.log(nothing);", 'no such export'],
 ];
 
@@ -58,6 +66,10 @@ try {
   for (const name of ['ward', 'ggx'])
     run('export', `${name}.json`, '-o', `node_modules/hshfit-${name}`, '--target', 'three', '--no-error');
 
+  run('library', 'learn', 'lambert', 'ggx:alpha=.4', '--components', '2', '--limit', '10', '--limit-maximum', '10',
+    '--limit-flip', '1', '-o', 'atlas.library');
+  run('library', 'export', 'atlas.library', '-o', 'node_modules/hshfit-atlas', '--target', 'three');
+
   const accepted = compiled(good);
   expect(accepted.ok, `types: ${accepted.text}`);
   for (const [text, name] of bad) {
@@ -69,6 +81,16 @@ try {
   writeFileSync(join(folder, 'use.mjs'), `
     import { Mesh, LightProbe, ShaderMaterial } from 'three';
     import { environmentFromFile, environmentFromProbe, facts, material, studio } from 'hshfit-ward';
+    import { material as ofLibrary, materials } from 'hshfit-atlas';
+    const two = ofLibrary({ materialIndex: materials[1] });
+    const refused = [2, -1, 0.5, 'lambert ', null, NaN].filter((number) => {
+      try {
+        two.materialIndex = number;
+        return false;
+      } catch (error) {
+        return error instanceof RangeError && error.message.startsWith('atlas has no material ');
+      }
+    });
     const made = material();
     const probe = new LightProbe(undefined, 2);
     probe.sh.coefficients[2].set(1, 2, 3);
@@ -78,10 +100,11 @@ try {
       basis: { name: 'sh', order: 2, condon_shortley: false }, coefficients: [[1, 0, 5, 0]] });
     console.log(JSON.stringify([made instanceof ShaderMaterial, new Mesh(undefined, made).material === made,
       made.clone().isHshfitMaterial, facts.name, studio.length, [...light.slice(6, 9)],
-      [...up.slice(0, 12)].map((x) => Math.round(x * 1e9) / 1e9)]));`);
+      [...up.slice(0, 12)].map((x) => Math.round(x * 1e9) / 1e9),
+      two.materialIndex, two.clone().materialIndex, refused.length]));`);
   const said = JSON.parse(execFileSync(process.execPath, ['use.mjs'], { cwd: folder, encoding: 'utf8' }));
   const wanted = [true, true, true, 'ward:kd=0.1/0.2/0.3,ax=0.3,ay=0.6', 75, [2, 4, 6],
-    [1, 1, 1, 5, 5, 5, 0, 0, 0, 0, 0, 0]];
+    [1, 1, 1, 5, 5, 5, 0, 0, 0, 0, 0, 0], 1, 1, 6];
   expect(JSON.stringify(said) === JSON.stringify(wanted), `in Node: ${JSON.stringify(said)}`);
   console.log('imported in Node:', JSON.stringify(said));
 } finally {

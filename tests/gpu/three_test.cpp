@@ -59,6 +59,9 @@ TEST(Three, RefusesWhatAMaterialCannotBe) {
               filesOf(grey, {.name = "a"}));
     for (const char* name : {"", "a b", "../a", "a'b", "a\"", "a\n"})
         EXPECT_THROW(threeFiles(grey, {.name = name}), UsageError) << name;
+    // A row of a texture for each material: devices need take no more than 2048.
+    EXPECT_THROW(threeFiles(SharedSums{}, std::vector<std::string>(2049, "m"), {.name = "a"}),
+                 UsageError);
 }
 
 TEST(Highlight, RoughnessOfGgxIsItsAlpha) {

@@ -116,7 +116,8 @@ void setAskew(const LightingShader& shader, data& page) {
     page.set("folded", azimuths.folded);
     page.set("askew", !shader.inPlane &&
                           (shader.kind != LightingShader::Kind::coefficients || shader.order > 1));
-    page.set("place", around ? "cosine, turn" : "cosine");
+    page.set("materials", shader.materials);
+    page.set("place", around ? "cosine, turn" : shader.materials ? "cosine, material" : "cosine");
     page.set("side", azimuths.folded ? "side" : "b");
     page.set("flip", azimuths.folded ? "flip * " : "");
     page.set("azimuths", std::to_string(azimuths.count));

@@ -13,7 +13,8 @@ namespace hshfit::lighting {
 /// A model as a shader sees it. The function is called PREFIX_coefficients(n, wo, light),
 /// PREFIX_splitSum(n, wo, irradiance), PREFIX_ltc(n, wo, c0, c1, c2, c3) or PREFIX_prefiltered(n,
 /// wo), all in the world, and gives what the library's `radiance` does, in single precision. With
-/// several azimuths, the tangent follows n.
+/// several azimuths, the tangent follows n. With `materials` the function takes the number of a
+/// material first.
 struct LightingShader {
     enum class Kind { coefficients, splitSum, cosines, prefiltered };
     Kind kind = Kind::coefficients;
@@ -23,6 +24,9 @@ struct LightingShader {
     const Prefilter* engine = nullptr;  ///< of prefiltered
     std::size_t lobes = 0;              ///< of prefiltered
     bool inPlane = true;                ///< lobes are their own mirror images
+    /// Of prefiltered with one azimuth: the table has a row for each material, which has its rows
+    /// by elevation one after another.
+    bool materials = false;
     ElevationRows rows = {};
     AzimuthNodes azimuths = {};
     std::size_t texels = 0;  ///< of a row

@@ -42,6 +42,18 @@ const cases = [
   { name: 'basis', sampled: true, spec: 'phong:exponent=4,kd=.3', project: ['--form', 'basis', '--order', '5'] },
 ];
 
+// Libraries of three materials, of which one is drawn, its number from `from`.
+const libraries = { atlas: 0.05, sums: 0 }; // the table's largest error
+const [grey, gold, paint] = ['lambert:kd=.5', 'ggx:alpha=.3,F0=.9/.6/.3', 'ggx:alpha=.2,F0=.05,kd=.4/.3/.1'];
+const nameOf = (spec) => spec.replace(/[:,/]/g, '_');
+const members = [
+  { name: 'atlas', spec: gold, from: 'number', kinds: ['directional', 'picture'] },
+  { name: 'atlas', spec: paint, from: 'name', kinds: ['point'] },
+  { name: 'atlas', spec: gold, from: 'instance', kinds: ['point'] },
+  { name: 'atlas', spec: paint, from: 'vertex', kinds: ['directional', 'picture'] },
+  { name: 'sums', spec: gold, from: 'number', kinds: ['directional'] },
+];
+
 const folder = mkdtempSync(join(tmpdir(), 'hshfit-three-'));
 const run = (...words) => execFileSync(program, [...words, '--quiet'], { cwd: folder });
 
@@ -109,9 +121,11 @@ const turnedFrom = ([x, y, z]) => {
 };
 
 // In the page: the sphere under one kind of light, as floats from the bottom row on.
-async function draw({ name, gpu, kind, side, view, lights, environment, tangents, picture, turn }) {
+// A material of a library comes as { member, from }: its number as a uniform, given so or by name, or
+// as an attribute of each vertex or instance.
+async function draw({ name, gpu, kind, side, view, lights, environment, tangents, picture, turn, member, from }) {
   const three = await import(gpu ? 'three/webgpu' : 'three');
-  const { material } = await import(`/out/${name}/${name}_three${gpu ? '_webgpu' : ''}.js`);
+  const { material, materialNumber } = await import(`/out/${name}/${name}_three${gpu ? '_webgpu' : ''}.js`);
   const renderer = gpu ? new three.WebGPURenderer() : new three.WebGLRenderer();
   if (gpu) {
     await renderer.init();
@@ -130,8 +144,23 @@ async function draw({ name, gpu, kind, side, view, lights, environment, tangents
     }
     geometry.setAttribute('tangent', new three.BufferAttribute(values, 4));
   }
-  const surface = material({ tangents, environment: kind === 'environment' ? environment : null });
-  const mesh = new three.Mesh(geometry, surface);
+  const own = { environment: kind === 'environment' ? environment : null };
+  if (member) own.indices = from === 'instance' || from === 'vertex';
+  else own.tangents = tangents;
+  const surface = material(own);
+  if (member && !own.indices) surface.materialIndex = from === 'name' ? member : materialNumber(member);
+  let mesh = new three.Mesh(geometry, surface);
+  if (from === 'vertex') {
+    const numbers = new Float32Array(geometry.attributes.position.count).fill(materialNumber(member));
+    geometry.setAttribute('materialIndex', new three.BufferAttribute(numbers, 1));
+  } else if (from === 'instance') {
+    // The first instance, of another material, is out of sight.
+    mesh = new three.InstancedMesh(geometry, surface, 2);
+    const numbers = Float32Array.of((materialNumber(member) + 1) % 3, materialNumber(member));
+    geometry.setAttribute('materialIndex', new three.InstancedBufferAttribute(numbers, 1));
+    mesh.setMatrixAt(0, new three.Matrix4().makeTranslation(50, 0, 0));
+    mesh.setMatrixAt(1, new three.Matrix4());
+  }
   mesh.rotation.set(...view.rotation);
   const scene = new three.Scene().add(mesh);
   const add = (light, { place }) => {
@@ -166,12 +195,12 @@ async function draw({ name, gpu, kind, side, view, lights, environment, tangents
   camera.position.set(...view.eye);
   camera.lookAt(0, 0, 0);
   const target = new three.RenderTarget(side, side, { type: three.FloatType });
-  const own = gpu ? target : new three.WebGLRenderTarget(side, side, { type: three.FloatType });
-  renderer.setRenderTarget(own);
+  const seen = gpu ? target : new three.WebGLRenderTarget(side, side, { type: three.FloatType });
+  renderer.setRenderTarget(seen);
   renderer.render(scene, camera);
   let pixels = new Float32Array(4 * side * side);
-  if (gpu) pixels = await renderer.readRenderTargetPixelsAsync(own, 0, 0, side, side);
-  else renderer.readRenderTargetPixels(own, 0, 0, side, side, pixels);
+  if (gpu) pixels = await renderer.readRenderTargetPixelsAsync(seen, 0, 0, side, side);
+  else renderer.readRenderTargetPixels(seen, 0, 0, side, side, pixels);
   camera.updateMatrixWorld();
   mesh.updateMatrixWorld();
   const answer = {
@@ -237,11 +266,12 @@ function evaluated(file, pairs, clamp = true) {
   });
 }
 
-// What a light gives at the points.
-function lit(file, kind, points) {
+// What a light gives at the points; `even`: where f is 1 everywhere.
+function lit(file, kind, points, even = false) {
   const { colour, intensity, place } = lights[kind];
   const wis = points.map(({ n, local }) => local(unit(kind === 'point' ? minus(place, n) : place)));
-  const f = evaluated(file, wis.map((wi, i) => [wi, points[i].wo]));
+  const pairs = wis.map((wi, i) => [wi, points[i].wo]);
+  const f = even ? pairs.map(([wi]) => [wi[2], wi[2], wi[2]]) : evaluated(file, pairs);
   return points.map(({ n }, i) => {
     if (wis[i][2] <= 0) return [0, 0, 0];
     const gap = minus(place, n),
@@ -324,8 +354,42 @@ async function proveMaterial(page, { name, spec, sampled = false, tangents = fal
   }
 }
 
-async function provePage(page, name) {
-  await page.goto(`http://localhost/out/${name}/${name}_three.html`, { waitUntil: 'commit' });
+// As `hshfit eval` has the material of the library, but for the table's largest error of
+// ln(f + 0.001) at each pixel.
+async function proveMember(page, { name, spec, from, kinds }) {
+  const [member, tableError] = [nameOf(spec), libraries[name]];
+  for (const kind of kinds) {
+    const drawn = await page.evaluate(draw, {
+      ...{ name, gpu, kind, side, view, lights, turn, member, from },
+      picture: kind === 'picture' ? picture(1024, 512) : null,
+    });
+    const file = `${name}.library:${member}`;
+    const title = `${name}, ${member} by ${from}, ${kind}`;
+    let points = surfacePoints(drawn, gpu, false);
+    if (kind === 'picture') {
+      points = points.filter((_, i) => i % Math.ceil(points.length / 30) === 0);
+      const expected = surrounded(file, points, true, turnedFrom).map((rgb) => rgb.map((x) => 1.5 * x));
+      compare(title, points, drawn.pixels, expected, 0.06);
+      continue;
+    }
+    const expected = lit(file, kind, points),
+      even = lit(file, kind, points, true);
+    // A pixel of SwiftShader is off by a hundredth where highlights are steep.
+    const most = Math.max(...expected.flat());
+    let worst = 0;
+    points.forEach(({ k }, i) => {
+      for (let c = 0; c < 3; ++c) {
+        const bound = Math.expm1(tableError) * (expected[i][c] + 1e-3 * even[i][c]) + 0.01 * most;
+        worst = Math.max(worst, Math.abs(drawn.pixels[4 * k + c] - expected[i][c]) / bound);
+      }
+    });
+    compare(title, points, drawn.pixels, expected, Math.max(0.01, tableError));
+    expect(worst <= 1, `${title}: ${worst} times what the table's error explains`);
+  }
+}
+
+async function provePage(page, name, hash = '') {
+  await page.goto(`http://localhost/out/${name}/${name}_three.html${hash}`, { waitUntil: 'commit' });
   expect((await page.textContent('#message')).startsWith('Rendering'), 'the page says nothing first');
   await page.waitForSelector('#message', { state: 'hidden' });
   expect((await page.textContent('h1')).length > 3, 'no title');
@@ -354,13 +418,20 @@ await finish(async () => {
       run('project', spec, '-o', `${name}.json`, ...project);
       run('export', `${name}.json`, '-o', `out/${name}`, '--target', 'three', '--no-error', ...more);
     }
+    for (const [name, tableError] of Object.entries(libraries)) {
+      run('library', 'learn', grey, gold, paint, '--components', '3', '--bytes', '60', '--limit', '10',
+        '--limit-maximum', '10', '--limit-flip', '1', '-o', `${name}.library`);
+      run('library', 'export', `${name}.library`, '-o', `out/${name}`, '--target', 'three', '--table-error', `${tableError}`);
+    }
     await withBrowser(
       driver,
       async (page, complaints) => {
         await page.goto('http://localhost/');
         for (const one of cases) await proveMaterial(page, one);
+        for (const one of members) await proveMember(page, one);
         // Headless Chromium without a GPU ends its GPU process when WebGPU draws into a canvas.
         if (!gpu) await provePage(page, 'ward');
+        if (!gpu) await provePage(page, 'atlas', `#material=${encodeURIComponent(nameOf(paint))}`);
         const real = complaints.filter((text) => !/GPU stall|Context Lost|Instance dropped/i.test(text));
         expect(real.length === 0, `console: ${real.join('; ')}`);
       },

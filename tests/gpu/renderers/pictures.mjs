@@ -63,7 +63,11 @@ function png(width, height, rgb) {
   head.writeUInt32BE(height, 4);
   head.set([8, 2, 0, 0, 0], 8);
   const rows = [];
-  for (let y = 0; y < height; ++y) rows.push(Buffer.from([0]), rgb.subarray(3 * width * y, 3 * width * (y + 1)));
+  // Each row as differences from the pixel to the left (filter 1), which compress better.
+  for (let y = 0; y < height; ++y) {
+    const row = rgb.subarray(3 * width * y, 3 * width * (y + 1));
+    rows.push(Buffer.from([1]), row.map((value, k) => value - (k < 3 ? 0 : row[k - 3])));
+  }
   const signature = Buffer.from([137, 80, 78, 71, 13, 10, 26, 10]);
   return Buffer.concat([
     signature,
@@ -79,6 +83,46 @@ const exposureOf = ({ pixels }) => {
   return 0.9 / lit[Math.floor(0.99 * (lit.length - 1))];
 };
 
+// The mean difference of what is shown, both exposed as the right one: of sRGB from 0 to 1, over
+// pixels that are not black in the right one.
+export function shownDifference(expected, found) {
+  const scale = exposureOf(expected);
+  const shown = (value) => encoded(Math.min(Math.max(scale * value, 0), 1));
+  let sum = 0,
+    count = 0;
+  expected.pixels.forEach((value, k) => {
+    if (k % 4 === 3 || value <= 0) return;
+    sum += Math.abs(shown(value) - shown(found.pixels[k]));
+    ++count;
+  });
+  return sum / count;
+}
+
+// Puts a picture into 8 bits of a wide one, `left` and `top` in pixels.
+function put(rgb, width, left, top, { size, pixels }, scale) {
+  for (let y = 0; y < size; ++y)
+    for (let x = 0; x < size; ++x)
+      for (let c = 0; c < 3; ++c) {
+        const value = encoded(Math.min(Math.max(scale * pixels[4 * (y * size + x) + c], 0), 1));
+        rgb[3 * ((top + size - 1 - y) * width + left + x) + c] = Math.round(255 * value);
+      }
+}
+
+// Pairs of { expected, found } in rows of `columns`: all found pictures, and below them those that
+// are right, each pair exposed as the right one.
+export function writeMosaic(path, pairs, columns) {
+  const side = pairs[0].expected.size,
+    width = columns * side,
+    height = Math.ceil(pairs.length / columns) * side;
+  const rgb = Buffer.alloc(6 * width * height);
+  pairs.forEach(({ expected, found }, k) => {
+    const [left, top] = [(k % columns) * side, Math.floor(k / columns) * side];
+    put(rgb, width, left, top, found, exposureOf(expected));
+    put(rgb, width, left, top + height, expected, exposureOf(expected));
+  });
+  writeFileSync(path, png(width, 2 * height, rgb));
+}
+
 // A sheet of rows of [right, found] pairs, each followed by four times the difference; exposed as the
 // right one.
 export function writeSheet(path, rows) {
@@ -86,22 +130,14 @@ export function writeSheet(path, rows) {
     width = Math.max(...rows.map((row) => row.length)) * 3 * side,
     height = rows.length * side;
   const rgb = Buffer.alloc(3 * width * height, 24);
-  const put = (left, top, { size, pixels }, scale) => {
-    for (let y = 0; y < size; ++y)
-      for (let x = 0; x < size; ++x)
-        for (let c = 0; c < 3; ++c) {
-          const value = encoded(Math.min(Math.max(scale * pixels[4 * (y * size + x) + c], 0), 1));
-          rgb[3 * ((top + size - 1 - y) * width + left + x) + c] = Math.round(255 * value);
-        }
-  };
   rows.forEach((row, r) =>
     row.forEach(({ expected, found }, column) => {
       const scale = exposureOf(expected),
         left = 3 * side * column;
       const gap = found.pixels.map((value, k) => 4 * Math.abs(value - expected.pixels[k]));
-      put(left, r * side, expected, scale);
-      put(left + side, r * side, found, scale);
-      put(left + 2 * side, r * side, { size: side, pixels: gap }, scale);
+      put(rgb, width, left, r * side, expected, scale);
+      put(rgb, width, left + side, r * side, found, scale);
+      put(rgb, width, left + 2 * side, r * side, { size: side, pixels: gap }, scale);
     }),
   );
   writeFileSync(path, png(width, height, rgb));

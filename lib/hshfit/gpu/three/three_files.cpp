@@ -102,6 +102,16 @@ std::string listed(const std::vector<double>& values) {
     return text;
 }
 
+/// Numbers in JavaScript, and their type in three.js.
+struct ArrayWords {
+    const char *array, *type;
+};
+ArrayWords arrayWords(Number number) {
+    if (number == Number::float16) return {"Uint16Array", "HalfFloatType"};
+    if (number == Number::unorm8) return {"Uint8Array", "UnsignedByteType"};
+    return {"Float32Array", "FloatType"};
+}
+
 void setLookUps(const ThreeOptions& options, const std::string& prefix, data& page) {
     const ThreeLookUps& lookUps = options.lookUps;
     std::string upper = prefix;
@@ -118,9 +128,34 @@ void setLookUps(const ThreeOptions& options, const std::string& prefix, data& pa
     page.set("lastLevel", std::to_string(std::max<std::size_t>(1, lookUps.first.size()) - 1));
     page.set("firstBand", listed(lookUps.first));
     page.set("secondBand", listed(lookUps.second));
-    page.set("lookUpWidth", std::to_string(lookUps.width));
-    page.set("lookUpHeight", std::to_string(lookUps.height));
-    page.set("lookUpBase64", base64(std::as_bytes(std::span(lookUps.texels))));
+    const ArrayWords words = arrayWords(lookUps.texels.number);
+    page.set("lookUpArray", words.array);
+    page.set("lookUpType", words.type);
+    page.set("lookUpWidth", std::to_string(lookUps.texels.width));
+    page.set("lookUpHeight", std::to_string(lookUps.texels.height));
+    page.set("lookUpBase64", base64(lookUps.texels.bytes));
+}
+
+/// The textures and the number of a material that the shader's functions take first: as WGSL
+/// declares them, as it passes them on, and as the module names them.
+void setOwn(const ThreeInput& input, data& page) {
+    std::string declared, called, own;
+    const auto add = [&](const char* name, const char* type, const char* value) {
+        declared += fmt::format("{}: {}, ", name, type);
+        called += fmt::format("{}, ", name);
+        own += fmt::format("{}{}: {}", own.empty() ? "" : ", ", name, value);
+    };
+    constexpr const char *array = "texture_2d_array<f32>", *sampler = "sampler";
+    if (input.texels) add("texels", array, "texels");
+    if (input.texels && input.filtered) add("texelSampler", sampler, "sampler(texels)");
+    if (input.table) {
+        add("tableSampler", sampler, "sampler(table)");
+        add("table", array, "table");
+    }
+    if (!input.materials.empty()) add("number", "i32", "number");
+    page.set("ownDeclared", declared);
+    page.set("ownCalled", called);
+    page.set("own", own);
 }
 
 /// The words of all templates.
@@ -138,7 +173,12 @@ data wordsOf(const ThreeInput& input, const ThreeOptions& options) {
     page.set("slots", std::to_string(slots));
     page.set("probeSlots", std::to_string(std::min(slots, 9)));
     page.set("texels", input.texels.has_value());
-    page.set("filtered", input.texels && input.filtered);
+    page.set("evaluation", input.prefix + (input.materials.empty() ? "_eval" : "_material"));
+    page.set("materials", !input.materials.empty());
+    page.set("lastMaterial", std::to_string(std::max<std::size_t>(1, input.materials.size()) - 1));
+    page.set("table", input.table.has_value());
+    page.set("tableSampler", input.prefix + "_basis");
+    setOwn(input, page);
     page.set("odd", slotsWhere(slots, [&](int m) { return input.oddSign && m % 2 != 0; }));
     page.set("sines", slotsWhere(slots, [](int m) { return m < 0; }));
     setLookUps(options, input.prefix, page);
@@ -164,23 +204,32 @@ Json factsOf(const ThreeInput& input, const ThreeOptions& options) {
             {"error", options.fitError.empty() ? Json() : Json::parse(options.fitError)}};
 }
 
-void setTexels(const Texels& texels, bool filtered, data& page) {
+data textureRow(const char* name, const char* what, const Texels& texels, bool filtered) {
     data row;
+    row.set("name", name);
+    row.set("remark", what);
     row.set("base64", base64(texels.bytes));
     row.set("width", std::to_string(texels.width));
     row.set("height", std::to_string(texels.height));
     row.set("layers", std::to_string(texels.layers));
     row.set("filter", filtered ? "LinearFilter" : "NearestFilter");
-    const bool half = texels.number == Number::float16, whole = texels.number == Number::unorm8;
-    row.set("array", half ? "Uint16Array" : whole ? "Uint8Array" : "Float32Array");
-    row.set("type", half ? "HalfFloatType" : whole ? "UnsignedByteType" : "FloatType");
-    page.set("texels", row);
+    const ArrayWords words = arrayWords(texels.number);
+    row.set("array", words.array);
+    row.set("type", words.type);
+    return row;
 }
 
 std::string dataModule(const ThreeInput& input, const ThreeOptions& options) {
     data page = wordsOf(input, options);
     page.set("facts", jsonText(factsOf(input, options), 2));
-    if (input.texels) setTexels(*input.texels, input.filtered, page);
+    data textures{data::type::list};
+    if (input.texels)
+        textures.push_back(textureRow("texel", "The texture that the shader reads", *input.texels,
+                                      input.filtered));
+    if (input.table)
+        textures.push_back(textureRow("table", "The functions of the library", *input.table, true));
+    page.set("textures", textures);
+    page.set("names", jsonText(Json(input.materials), 2));
     const int bands = bandsOf(input, options);
     const ViewerLight light =
         viewerLight(parseLights(std::string(studioKind().name)), std::max(bands, 2), 8);
@@ -199,7 +248,7 @@ std::string materialModule(const ThreeInput& input, const ThreeOptions& options)
     data page = wordsOf(input, options);
     page.set("snippet", input.glsl);
     page.set("fragment", backquoted(rendered(embedded::three_fragment, page)));
-    page.set("vertex", std::string(embedded::three_vertex));
+    page.set("vertex", rendered(embedded::three_vertex, page));
     return rendered(embedded::three_material, page);
 }
 
@@ -223,6 +272,10 @@ std::string typesOf(const ThreeInput& input, const ThreeOptions& options, bool n
 std::string errorText(const ThreeOptions& options) {
     if (options.fitError.empty()) return "The error was not measured.";
     const Json error = Json::parse(options.fitError);
+    if (error.contains("largest")) {
+        return fmt::format("The table of the functions changes ln(f + 0.001) by {:.2g} at most.",
+                           error["largest"].get<double>());
+    }
     if (error.contains("file")) {
         return fmt::format("Mean log error against the source: {:.3g} ({:.3g} in the file).",
                            error["mean_log"].get<double>(), error["file"].get<double>());
@@ -287,6 +340,11 @@ std::vector<TextFile> threeFiles(const Payload& payload, const ThreeOptions& opt
 
 std::vector<TextFile> threeFiles(const FormPayload& payload, const ThreeOptions& options) {
     return filesOf(threeInput(payload, options), options);
+}
+
+std::vector<TextFile> threeFiles(const SharedSums& library, const std::vector<std::string>& names,
+                                 const ThreeOptions& options) {
+    return filesOf(threeInput(library, names, options), options);
 }
 
 }  // namespace hshfit::gpu::inline three

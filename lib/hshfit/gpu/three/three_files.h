@@ -1,6 +1,7 @@
 #pragma once
 
 #include <hshfit/gpu/forms/form_shader.h>
+#include <hshfit/gpu/forms/library_shader.h>
 #include <hshfit/gpu/payload.h>
 #include <hshfit/gpu/shader.h>
 
@@ -12,11 +13,10 @@ namespace hshfit::gpu::inline three {
 /// Lookups in an environment that three.js has prefiltered (lighting/prefiltered_lobes.h), as the
 /// room above hands them down.
 struct ThreeLookUps {
-    std::string wgsl = {};           ///< the snippet, with a texture, cube and sampler of its own
-    std::string glsl = {};           ///< PREFIX_prefiltered, on the macro PREFIX_PREFILTERED_LIGHT
-    std::vector<float> texels = {};  ///< RGBA by rows
-    std::size_t width = 0, height = 0;
-    bool along = false;                           ///< the function takes a tangent
+    std::string wgsl = {};  ///< the snippet, with a texture, cube and sampler of its own
+    std::string glsl = {};  ///< PREFIX_prefiltered, on the macro PREFIX_PREFILTERED_LIGHT
+    Texels texels = {};     ///< float16 or float32; of a library a row for each material
+    bool along = false;     ///< the function takes a tangent
     std::vector<double> first = {}, second = {};  ///< zonal coefficients of bands 1 and 2 by level
 };
 
@@ -44,5 +44,11 @@ struct TextFile {
 /// Units: radiance = f cos(theta_i) times the colour and intensity of a light, as in three.js.
 std::vector<TextFile> threeFiles(const Payload& payload, const ThreeOptions& options);
 std::vector<TextFile> threeFiles(const FormPayload& payload, const ThreeOptions& options);
+
+/// The same for all materials of a library, at most 2048: the shader is libraryShaderSource(), and
+/// the class takes the number or the name of a material, or numbers from an attribute. `names`: of
+/// the materials. Throws UsageError for more of them.
+std::vector<TextFile> threeFiles(const SharedSums& library, const std::vector<std::string>& names,
+                                 const ThreeOptions& options);
 
 }  // namespace hshfit::gpu::inline three

@@ -33,7 +33,8 @@ void addArguments(const std::string& function, const std::string& declared,
     }
 }
 
-std::string withArguments(const std::string& wgsl, const std::string& prefix, bool filtered) {
+std::string withArguments(const std::string& wgsl, const std::string& prefix, bool filtered,
+                          bool table = false) {
     std::string text = withoutBindings(wgsl);
     std::string declared = prefix + "_coefficients: texture_2d_array<f32>, ",
                 called = prefix + "_coefficients, ";
@@ -41,7 +42,12 @@ std::string withArguments(const std::string& wgsl, const std::string& prefix, bo
         declared += prefix + "_sampler: sampler, ";
         called += prefix + "_sampler, ";
     }
-    for (const char* name : {"texel", "evalRaw", "eval", "shade", "shadeWorld"})
+    if (table) {
+        declared += prefix + "_basis: texture_2d_array<f32>, ";
+        called += prefix + "_basis, ";
+    }
+    for (const char* name :
+         {"texel", "basisTexel", "evalRaw", "eval", "material", "shade", "shadeWorld"})
         addArguments(fmt::format("{}_{}", prefix, name), declared, called, text);
     return text;
 }
@@ -50,6 +56,9 @@ void replaceAll(const std::string& from, const std::string& to, std::string& tex
     for (std::size_t at = text.find(from); at != text.npos; at = text.find(from, at + to.size()))
         text.replace(at, from.size(), to);
 }
+
+/// Rows of a texture that every device takes.
+constexpr std::size_t mostMaterials = 2048;
 
 void refuseSpectral(const CoefficientHead& head) {
     if (head.channels.kind != Channels::Kind::spectral) return;
@@ -133,6 +142,36 @@ ThreeInput threeInput(const FormPayload& given, const ThreeOptions& options) {
         input.wgsl = withArguments(input.wgsl, input.prefix, false);
         input.texels = samplerTexels(payload.texels);
     }
+    return input;
+}
+
+ThreeInput threeInput(const SharedSums& library, const std::vector<std::string>& names,
+                      const ThreeOptions& options) {
+    if (names.size() > mostMaterials) {
+        throw UsageError(fmt::format(
+            "a module of three.js holds {} materials at most, and {} has {}: make libraries of "
+            "fewer",
+            mostMaterials, options.name, names.size()));
+    }
+    ThreeInput input;
+    input.title = options.name;
+    input.prefix = options.shader.prefix;
+    input.channels = Channels::rgb().names();
+    input.materials = names;
+    input.form = fmt::format("{} materials over {} functions{}", names.size(),
+                             library.functions.head.channels.count() - 1,
+                             library.table ? " in a table" : "");
+    input.texels = materialTexels(library);
+    input.number = numberName(input.texels->number);
+    input.bytes = input.texels->bytes.size();
+    input.filtered = false;
+    if (library.table) {
+        input.table = library.table->texels();
+        input.bytes += input.table->bytes.size();
+    }
+    input.glsl = libraryShaderSource(Language::glslEs, library, input.prefix);
+    input.wgsl = withArguments(libraryShaderSource(Language::wgsl, library, input.prefix),
+                               input.prefix, library.table != nullptr, library.table != nullptr);
     return input;
 }
 

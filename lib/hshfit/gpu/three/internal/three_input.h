@@ -22,6 +22,8 @@ struct ThreeInput {
     bool oddSign = false;          ///< which takes functions of odd m with the Condon-Shortley sign
     std::optional<Texels> texels;  ///< float16, float32 or unorm8
     bool filtered = true;          ///< texels are interpolated
+    std::vector<std::string> materials;  ///< of a library, by number
+    std::optional<Texels> table;         ///< of the functions of a library, interpolated
 };
 
 /// The parts of a snippet of lookups for a node of three.js: the function, and those that it calls.
@@ -33,5 +35,7 @@ LookUpNode lookUpNode(const std::string& wgsl, const std::string& prefix);
 
 ThreeInput threeInput(const Payload& payload, const ThreeOptions& options);
 ThreeInput threeInput(const FormPayload& payload, const ThreeOptions& options);
+ThreeInput threeInput(const SharedSums& library, const std::vector<std::string>& names,
+                      const ThreeOptions& options);
 
 }  // namespace hshfit::gpu::inline three
