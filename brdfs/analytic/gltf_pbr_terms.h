@@ -193,7 +193,7 @@ void evalGltfPbr(const GltfPbrShape<double>& shape, const TermBatch& batch) {
     evalLanes<GltfPbrTerms>(shape, batch);
 }
 std::unique_ptr<ModelColumns> gltfPbrColumns(const ColumnRequest& request) {
-    return columnsOf<GltfPbrFormula, 4>(request);
+    return columnsOf<GltfPbrFormula, 4, 2>(request);
 }
 
 }  // namespace hshfit::brdfs::HWY_NAMESPACE

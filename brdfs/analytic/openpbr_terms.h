@@ -237,7 +237,7 @@ void evalOpenpbr(const OpenpbrShape<double>& shape, const TermBatch& batch) {
     evalLanes<OpenpbrTerms>(shape, batch);
 }
 std::unique_ptr<ModelColumns> openpbrColumns(const ColumnRequest& request) {
-    return columnsOf<OpenpbrFormula, 4>(request);
+    return columnsOf<OpenpbrFormula, 4, 3>(request);
 }
 
 }  // namespace hshfit::brdfs::HWY_NAMESPACE

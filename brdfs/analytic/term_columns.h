@@ -22,22 +22,31 @@
 HWY_BEFORE_NAMESPACE();
 namespace hshfit::brdfs::HWY_NAMESPACE {
 
-/// One vector of pairs from k on; lanes past the end repeat the last pair.
-struct LanePairs {
-    Incoming<Lanes> wi, wo;
-
-    HWY_INLINE LanePairs(const PairBatch& pairs, std::size_t k) {
-        constexpr std::size_t most = HWY_MAX_BYTES / sizeof(double);
-        double all[6][most];
-        for (std::size_t i = 0; i < lanesIn<Lanes>(); ++i) {
-            const std::size_t at = std::min(k + i, pairs.wi.count - 1);
-            all[0][i] = pairs.wi.x[at], all[1][i] = pairs.wi.y[at], all[2][i] = pairs.wi.z[at];
-            all[3][i] = pairs.wo[at].x, all[4][i] = pairs.wo[at].y, all[5][i] = pairs.wo[at].z;
-        }
-        load(all[0], wi.x), load(all[1], wi.y), load(all[2], wi.z);
-        load(all[3], wo.x), load(all[4], wo.y), load(all[5], wo.z);
+/// One vector of directions from k on; lanes past the end repeat the last.
+HWY_INLINE Incoming<Lanes> incomingAt(const PairBatch& pairs, std::size_t k) {
+    Incoming<Lanes> wi;
+    if (k + lanesIn<Lanes>() <= pairs.wi.count) {
+        load(pairs.wi.x + k, wi.x), load(pairs.wi.y + k, wi.y), load(pairs.wi.z + k, wi.z);
+        return wi;
     }
-};
+    double all[3][HWY_MAX_BYTES / sizeof(double)];
+    for (std::size_t i = 0; i < lanesIn<Lanes>(); ++i) {
+        const std::size_t at = std::min(k + i, pairs.wi.count - 1);
+        all[0][i] = pairs.wi.x[at], all[1][i] = pairs.wi.y[at], all[2][i] = pairs.wi.z[at];
+    }
+    load(all[0], wi.x), load(all[1], wi.y), load(all[2], wi.z);
+    return wi;
+}
+HWY_INLINE Incoming<Lanes> outgoingAt(const PairBatch& pairs, std::size_t k) {
+    double all[3][HWY_MAX_BYTES / sizeof(double)];
+    for (std::size_t i = 0; i < lanesIn<Lanes>(); ++i) {
+        const Direction& wo = pairs.wo[std::min(k + i, pairs.wi.count - 1)];
+        all[0][i] = wo.x, all[1][i] = wo.y, all[2][i] = wo.z;
+    }
+    Incoming<Lanes> wo;
+    load(all[0], wo.x), load(all[1], wo.y), load(all[2], wo.z);
+    return wo;
+}
 
 /// Columns with their derivatives by `n` shapes at a time.
 template <class Formula, int n>
@@ -89,11 +98,11 @@ private:
         const std::size_t count = pairs.wi.count, columns = 1 + linears_;
         const std::size_t first = p * std::max(n, 1);
         for (std::size_t k = 0; k < count;) {
-            const typename Formula::template Terms<T> terms(pass.shape, LanePairs(pairs, k).wo);
+            const typename Formula::template Terms<T> terms(pass.shape, outgoingAt(pairs, k));
             for (const std::size_t end = endOfOutgoing(pairs, k); k < end; k += lanesIn<Lanes>()) {
                 const std::size_t size = std::min(lanesIn<Lanes>(), count - k);
                 T term[TermBatch::maxTerms];
-                terms(LanePairs(pairs, k).wi, term);
+                terms(incomingAt(pairs, k), term);
                 for (std::size_t c = 0; c < columns; ++c) {
                     const T sum = pass.weighted(c, term);
                     if (p == 0)
@@ -121,6 +130,12 @@ private:
     }
 
     static HWY_INLINE void put(Lanes value, std::size_t size, bool added, double* to) {
+        if (size == lanesIn<Lanes>()) {
+            Lanes before(0.0);
+            if (added) load(to, before);
+            store(added ? before + value : value, to);
+            return;
+        }
         double buffer[HWY_MAX_BYTES / sizeof(double)];
         store(value, buffer);
         for (std::size_t i = 0; i < size; ++i) to[i] = added ? to[i] + buffer[i] : buffer[i];
@@ -130,9 +145,14 @@ private:
     std::vector<Pass> passes_;
 };
 
-template <class Formula, int n>
+/// By `n` shapes at a time, or as few as `least` where that leaves fewer of them idle.
+template <class Formula, int n, int least = n>
 std::unique_ptr<ModelColumns> columnsOf(const ColumnRequest& request) {
-    if (request.shapes.empty()) return std::make_unique<ColumnsOf<Formula, 0>>(request);
+    const std::size_t shapes = request.shapes.size(), passes = (shapes + n - 1) / n;
+    if (shapes == 0) return std::make_unique<ColumnsOf<Formula, 0>>(request);
+    if constexpr (n > least) {
+        if (passes * (n - 1) >= shapes) return columnsOf<Formula, n - 1, least>(request);
+    }
     return std::make_unique<ColumnsOf<Formula, n>>(request);
 }
 
