@@ -99,23 +99,46 @@ TEST(VectorMemory, MixedDotsStayWithinTheirRows) {
 }
 
 TEST(VectorMemory, GramMatricesStayWithinTheirColumns) {
+    constexpr std::size_t smooth = 3, stride = 2;
     forEveryTarget([] {
         for (const std::size_t columns : {gramPadding, 2 * gramPadding})
             for (const std::size_t rows : {1, 5})
                 for (const Side side : sides) {
-                    const GuardedArray<double> x(rows * columns, side, numberAt);
-                    const GuardedArray<double> weights(rows, side, numberAt);
-                    GuardedArray<double> scaled(rows * columns, side),
-                        gram(columns * columns, side);
-                    addWeightedGram(x.data(), weights.data(), rows, columns, scaled.data(),
-                                    gram.data());
-                    for (std::size_t i = 0; i < columns; ++i)
-                        for (std::size_t j = 0; j <= i; ++j) {
-                            double sum = 0;
-                            for (std::size_t k = 0; k < rows; ++k)
-                                sum += weights[k] * x[k * columns + i] * x[k * columns + j];
-                            ASSERT_NEAR(gram[i * columns + j], sum, 1e-14);
+                    const GuardedArray<double> terms(rows * columns, side, numberAt);
+                    std::vector<HalfwayResidual> residuals(rows * stride);
+                    for (std::size_t k = 0; k < residuals.size(); ++k) {
+                        const auto n = static_cast<double>(k + 1);
+                        residuals[k] = {.smooth = 0.2 * n, .lobe = 1 / n, .error = -n, .weight = n};
+                    }
+                    GuardedArray<double> space(2 * rows * columns, side),
+                        gram(columns * columns, side), slope(columns, side);
+                    addResiduals({.terms = terms.data(),
+                                  .residuals = residuals.data(),
+                                  .count = rows,
+                                  .columns = columns,
+                                  .smooth = smooth,
+                                  .stride = stride},
+                                 space.data(), gram.data(), slope.data());
+                    const auto derivative = [&](std::size_t k, std::size_t i) {
+                        const HalfwayResidual& at = residuals[k * stride];
+                        return (i < smooth ? at.smooth : at.lobe) * terms[k * columns + i];
+                    };
+                    for (std::size_t i = 0; i < columns; ++i) {
+                        double sum = 0;
+                        for (std::size_t k = 0; k < rows; ++k) {
+                            const HalfwayResidual& at = residuals[k * stride];
+                            sum += at.weight * at.error * derivative(k, i);
                         }
+                        ASSERT_NEAR(slope[i], sum, 1e-12);
+                        for (std::size_t j = 0; j <= i; ++j) {
+                            double product = 0;
+                            for (std::size_t k = 0; k < rows; ++k) {
+                                product += residuals[k * stride].weight * derivative(k, i) *
+                                           derivative(k, j);
+                            }
+                            ASSERT_NEAR(gram[i * columns + j], product, 1e-12);
+                        }
+                    }
                 }
     });
 }
