@@ -22,6 +22,8 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <span>
+#include <string_view>
 #include <utility>
 
 namespace hshfit::jobs {
@@ -169,6 +171,26 @@ std::vector<const gpu::Target*> targetsOf(const std::string& names) {
     return chosen;
 }
 
+bool holds(std::span<const gpu::Target* const> targets, std::string_view name) {
+    return std::ranges::any_of(targets,
+                               [&](const gpu::Target* target) { return target->name == name; });
+}
+
+/// Whether the files of three.js are asked for and possible. Throws UsageError where they are not;
+/// with all targets, they are left out, with a note.
+bool wantsThree(std::span<const gpu::Target* const> targets, const LibraryExportOptions& options,
+                const ExportedLibrary& exported, const Listener& listener) {
+    if (!holds(targets, "three")) return false;
+    try {
+        gpu::checkThree(exported.name, exported.materials.size());
+    } catch (const UsageError& error) {
+        if (options.targets != "all") throw;
+        listener.say(fmt::format("left out: {}", error.what()));
+        return false;
+    }
+    return true;
+}
+
 /// The files of three.js.
 void addThree(const ml::Library& library, const gpu::SharedSums& sums,
               const LibraryExportOptions& options, const Listener& listener, FileSet& files,
@@ -215,6 +237,7 @@ ExportedLibrary exportLibrary(const std::string& path, const std::string& folder
     if (exported.materials.empty())
         throw InputError(
             fmt::format("{}: none of its materials is in the basis; export them one by one", path));
+    const bool three = wantsThree(targets, options, exported, listener);
     if (options.tableError > 0) {
         gpu::TabledLibrary tabled = gpu::tabledWithin(sums, options.tableError);
         exported.table = tableOf(library, exported, tabled);
@@ -244,12 +267,8 @@ ExportedLibrary exportLibrary(const std::string& path, const std::string& folder
          .tests = gpu::readableSidecar(jsonText(
              Json{{"format", "hshfit-gpu-library-test"}, {"version", 1}, {"tests", tests}}))},
         containers, exported.name, false, files);
-    const auto wanted = [&](std::string_view name) {
-        return std::ranges::any_of(targets,
-                                   [&](const gpu::Target* target) { return target->name == name; });
-    };
     for (const gpu::LanguageEntry& language : gpu::languages()) {
-        if (!wanted(language.name)) continue;
+        if (!holds(targets, language.name)) continue;
         const std::string file = gpu::shaderFileName(exported.name, language, options.prefix);
         files.write(file,
                     gpu::fileText(language.language,
@@ -257,7 +276,7 @@ ExportedLibrary exportLibrary(const std::string& path, const std::string& folder
                                   std::filesystem::path(file).stem().string()));
         exported.texts.push_back(file);
     }
-    if (wanted("three")) addThree(library, sums, options, listener, files, exported);
+    if (three) addThree(library, sums, options, listener, files, exported);
     files.commit();
     return exported;
 }

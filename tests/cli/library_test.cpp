@@ -153,6 +153,9 @@ TEST_F(LibraryCommand, ExportSaysWhatALibraryIsNot) {
     EXPECT_NE(osl.err.find("a library is no 'osl'"), std::string::npos) << osl.err;
     EXPECT_EQ(run("library export " + path("a.library") + to + " --target gltf").code, 2);
     EXPECT_EQ(run("library export " + path("a.library") + to + " --prefix 9x").code, 2);
+    std::filesystem::copy_file(path("a.library"), path("a b.library"));
+    expectError("library export '" + path("a b.library") + "'" + to + " --target three", 2,
+                "'a b' as the name of a module", 2);
     ASSERT_EQ(run("library decode '" + path("a.library") + ":ggx_alpha=.4_F0=.04' -o " +
                   path("one.library"))
                   .code,

@@ -314,14 +314,7 @@ std::string packageText(const ThreeInput& input, const ThreeOptions& options) {
 }
 
 std::vector<TextFile> filesOf(const ThreeInput& input, const ThreeOptions& options) {
-    const auto isPlain = [](unsigned char c) {
-        return std::isalnum(c) || c == '_' || c == '-' || c == '.';
-    };
-    if (options.name.empty() || !std::ranges::all_of(options.name, isPlain)) {
-        throw UsageError(fmt::format(
-            "'{}' as the name of a module; letters, digits, '_', '-' and '.' are safe in imports",
-            options.name));
-    }
+    checkThree(options.name);
     const std::string file = options.name + "_three";
     return {{file + ".js", materialModule(input, options)},
             {file + ".d.ts", typesOf(input, options, false)},
@@ -334,6 +327,23 @@ std::vector<TextFile> filesOf(const ThreeInput& input, const ThreeOptions& optio
 
 }  // namespace
 
+void checkThree(const std::string& name, std::size_t materials) {
+    const auto isPlain = [](unsigned char c) {
+        return std::isalnum(c) || c == '_' || c == '-' || c == '.';
+    };
+    if (name.empty() || !std::ranges::all_of(name, isPlain)) {
+        throw UsageError(fmt::format(
+            "'{}' as the name of a module; letters, digits, '_', '-' and '.' are safe in imports",
+            name));
+    }
+    constexpr std::size_t most = 2048;
+    if (materials > most)
+        throw UsageError(fmt::format(
+            "a module of three.js holds {} materials at most, and {} has {}: make libraries of "
+            "fewer",
+            most, name, materials));
+}
+
 std::vector<TextFile> threeFiles(const Payload& payload, const ThreeOptions& options) {
     return filesOf(threeInput(payload, options), options);
 }
@@ -344,6 +354,7 @@ std::vector<TextFile> threeFiles(const FormPayload& payload, const ThreeOptions&
 
 std::vector<TextFile> threeFiles(const SharedSums& library, const std::vector<std::string>& names,
                                  const ThreeOptions& options) {
+    checkThree(options.name, names.size());
     return filesOf(threeInput(library, names, options), options);
 }
 

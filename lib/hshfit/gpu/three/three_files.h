@@ -5,6 +5,7 @@
 #include <hshfit/gpu/payload.h>
 #include <hshfit/gpu/shader.h>
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,10 @@ struct TextFile {
     std::string path, text;
 };
 
+/// Throws UsageError for a name that no import takes, and for more materials than 2048, the rows of
+/// a texture that every device takes.
+void checkThree(const std::string& name, std::size_t materials = 1);
+
 /// A material for three.js from release 187 on: NAME_three.js (ShaderMaterial, WebGL 2),
 /// NAME_three_webgpu.js (NodeMaterial with WGSL), NAME_three_data.js, which both import, their
 /// types, a page that shows a sphere, and last a package.json. The shaders are shaderSource() and
@@ -47,7 +52,7 @@ std::vector<TextFile> threeFiles(const FormPayload& payload, const ThreeOptions&
 
 /// The same for all materials of a library, at most 2048: the shader is libraryShaderSource(), and
 /// the class takes the number or the name of a material, or numbers from an attribute. `names`: of
-/// the materials. Throws UsageError for more of them.
+/// the materials. Throws as checkThree().
 std::vector<TextFile> threeFiles(const SharedSums& library, const std::vector<std::string>& names,
                                  const ThreeOptions& options);
 

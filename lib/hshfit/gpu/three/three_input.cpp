@@ -57,9 +57,6 @@ void replaceAll(const std::string& from, const std::string& to, std::string& tex
         text.replace(at, from.size(), to);
 }
 
-/// Rows of a texture that every device takes.
-constexpr std::size_t mostMaterials = 2048;
-
 void refuseSpectral(const CoefficientHead& head) {
     if (head.channels.kind != Channels::Kind::spectral) return;
     throw UsageError(
@@ -147,12 +144,6 @@ ThreeInput threeInput(const FormPayload& given, const ThreeOptions& options) {
 
 ThreeInput threeInput(const SharedSums& library, const std::vector<std::string>& names,
                       const ThreeOptions& options) {
-    if (names.size() > mostMaterials) {
-        throw UsageError(fmt::format(
-            "a module of three.js holds {} materials at most, and {} has {}: make libraries of "
-            "fewer",
-            mostMaterials, options.name, names.size()));
-    }
     ThreeInput input;
     input.title = options.name;
     input.prefix = options.shader.prefix;
