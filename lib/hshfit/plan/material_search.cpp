@@ -96,22 +96,17 @@ void MaterialSearch::addPart(Version& version, const std::string& split) {
         part.addedRadiance = light_->radianceOf(*open_(part.added));
     }
     const Brdf& remainder = part.remainder ? *part.remainder : *version.brdf;
-    tradeoff::KeepOptions how = keeping(
-        version, split,
-        {.tolerance = std::max({plan_.material.budget.error / projectionShare,
-                                version.brdf->defaultTolerance(), remainder.defaultTolerance()}),
-         .maxEvaluations = mostEvaluations});
-    how.bases = ladderOptions_.bases;
-    how.maxOrder = ladderOptions_.maxOrder;
-    part.kept = std::make_unique<tradeoff::KeptProjections>(remainder, std::move(how));
+    const double tolerance =
+        std::max({plan_.material.budget.error / projectionShare, version.brdf->defaultTolerance(),
+                  remainder.defaultTolerance()});
+    part.kept = std::make_unique<tradeoff::KeptProjections>(
+        remainder, tradeoff::KeepOptions{
+                       .projection = {.tolerance = tolerance, .maxEvaluations = mostEvaluations},
+                       .bases = ladderOptions_.bases,
+                       .maxOrder = ladderOptions_.maxOrder,
+                       .folder = &options_.folder,
+                       .split = split});
     version.parts.emplace(split, std::move(part));
-}
-
-tradeoff::KeepOptions MaterialSearch::keeping(const Version& version, const std::string& split,
-                                              const ProjectionOptions& projection) const {
-    return {.projection = projection,
-            .folder = &options_.folder,
-            .specification = version.spec + "\n" + split};
 }
 
 /// Adds a version of one channel if all lit channels agree within the budget.
