@@ -152,10 +152,11 @@ Representation MaterialSearch::fileOf(const Rung& rung) {
     // A fit asks for no tolerance: the search's own is the file's.
     if (rung.form.kind == Representation::Kind::halfway)
         return represent(*part.kept, rung.form, part.added);
-    tradeoff::KeptProjections finer(part.kept->remainder(),
-                                    {.projection = {.tolerance = toleranceOf(rung.form)},
-                                     .folder = &options_.folder,
-                                     .split = rung.form.split});
+    tradeoff::KeepOptions how;
+    how.projection.tolerance = toleranceOf(rung.form);
+    how.folder = &options_.folder;
+    how.split = rung.form.split;
+    tradeoff::KeptProjections finer(part.kept->remainder(), std::move(how));
     return represent(finer, rung.form, part.added);
 }
 

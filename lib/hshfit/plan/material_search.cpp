@@ -96,16 +96,16 @@ void MaterialSearch::addPart(Version& version, const std::string& split) {
         part.addedRadiance = light_->radianceOf(*open_(part.added));
     }
     const Brdf& remainder = part.remainder ? *part.remainder : *version.brdf;
-    const double tolerance =
+    tradeoff::KeepOptions how;
+    how.projection.tolerance =
         std::max({plan_.material.budget.error / projectionShare, version.brdf->defaultTolerance(),
                   remainder.defaultTolerance()});
-    part.kept = std::make_unique<tradeoff::KeptProjections>(
-        remainder, tradeoff::KeepOptions{
-                       .projection = {.tolerance = tolerance, .maxEvaluations = mostEvaluations},
-                       .bases = ladderOptions_.bases,
-                       .maxOrder = ladderOptions_.maxOrder,
-                       .folder = &options_.folder,
-                       .split = split});
+    how.projection.maxEvaluations = mostEvaluations;
+    how.bases = ladderOptions_.bases;
+    how.maxOrder = ladderOptions_.maxOrder;
+    how.folder = &options_.folder;
+    how.split = split;
+    part.kept = std::make_unique<tradeoff::KeptProjections>(remainder, std::move(how));
     version.parts.emplace(split, std::move(part));
 }
 
