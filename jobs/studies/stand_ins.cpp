@@ -112,9 +112,8 @@ public:
     FormMaker(const CandidateSource& source, const std::vector<Form>& forms,
               const tradeoff::ProjectionFolder& folder)
         : source_(source),
-          kept_(source.brdf, {.projection = {.tolerance = toleranceOf(source.brdf)},
-                              .folder = &folder,
-                              .specification = source.spec}) {
+          kept_(source.brdf,
+                {.projection = {.tolerance = toleranceOf(source.brdf)}, .folder = &folder}) {
         kept_.expect(forms);
     }
 

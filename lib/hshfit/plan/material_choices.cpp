@@ -148,14 +148,15 @@ Choice MaterialSearch::shownChoice(const Rung& rung, double error) {
 }
 
 Representation MaterialSearch::fileOf(const Rung& rung) {
-    const Version& version = versions_[rung.source];
     Part& part = partOf(rung);
     // A fit asks for no tolerance: the search's own is the file's.
     if (rung.form.kind == Representation::Kind::halfway)
         return represent(*part.kept, rung.form, part.added);
-    tradeoff::KeptProjections finer(
-        part.kept->remainder(),
-        keeping(version, rung.form.split, {.tolerance = toleranceOf(rung.form)}));
+    tradeoff::KeepOptions how;
+    how.projection.tolerance = toleranceOf(rung.form);
+    how.folder = &options_.folder;
+    how.split = rung.form.split;
+    tradeoff::KeptProjections finer(part.kept->remainder(), std::move(how));
     return represent(finer, rung.form, part.added);
 }
 

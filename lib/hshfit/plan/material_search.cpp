@@ -96,22 +96,17 @@ void MaterialSearch::addPart(Version& version, const std::string& split) {
         part.addedRadiance = light_->radianceOf(*open_(part.added));
     }
     const Brdf& remainder = part.remainder ? *part.remainder : *version.brdf;
-    tradeoff::KeepOptions how = keeping(
-        version, split,
-        {.tolerance = std::max({plan_.material.budget.error / projectionShare,
-                                version.brdf->defaultTolerance(), remainder.defaultTolerance()}),
-         .maxEvaluations = mostEvaluations});
+    tradeoff::KeepOptions how;
+    how.projection.tolerance =
+        std::max({plan_.material.budget.error / projectionShare, version.brdf->defaultTolerance(),
+                  remainder.defaultTolerance()});
+    how.projection.maxEvaluations = mostEvaluations;
     how.bases = ladderOptions_.bases;
     how.maxOrder = ladderOptions_.maxOrder;
+    how.folder = &options_.folder;
+    how.split = split;
     part.kept = std::make_unique<tradeoff::KeptProjections>(remainder, std::move(how));
     version.parts.emplace(split, std::move(part));
-}
-
-tradeoff::KeepOptions MaterialSearch::keeping(const Version& version, const std::string& split,
-                                              const ProjectionOptions& projection) const {
-    return {.projection = projection,
-            .folder = &options_.folder,
-            .specification = version.spec + "\n" + split};
 }
 
 /// Adds a version of one channel if all lit channels agree within the budget.

@@ -118,7 +118,8 @@ KeptProjection failureOf(const Error& error) {
 KeptProjections::KeptProjections(const Brdf& brdf, KeepOptions options)
     : brdf_(brdf), options_(std::move(options)) {
     if (!options_.folder || !options_.folder->isUsed()) options_.folder = nullptr;
-    if (options_.folder) content_ = options_.folder->contentOf(brdf, options_.specification);
+    if (options_.folder)
+        content_ = options_.folder->contentOf(brdf, brdf.name() + "\n" + options_.split);
 }
 
 void KeptProjections::expect(std::span<const Form> forms) {

@@ -26,7 +26,7 @@ struct KeepOptions {
     int maxOrder = 0;
     /// Outlives what is made with it.
     const ProjectionFolder* folder = nullptr;
-    std::string specification = {};  ///< for ProjectionFolder::contentOf
+    std::string split = {};  ///< Form::split, by which the BRDF is what is left
 };
 
 /// Projections that many forms start from, each made once, in this run or in an earlier one: at the

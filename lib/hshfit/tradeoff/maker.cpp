@@ -43,8 +43,7 @@ Representation Maker::make(const Form& form) const {
 }
 
 void Maker::prepareOne(const std::string& name, Part& part) const {
-    KeepOptions how{
-        .projection = projection_, .folder = &folder_, .specification = brdf_.name() + "\n" + name};
+    KeepOptions how{.projection = projection_, .folder = &folder_, .split = name};
     if (!name.empty()) {
         part.split = takeOut(brdf_, name, open_);
         if (projection_.tolerance == 0) how.projection.tolerance = brdf_.defaultTolerance();

@@ -20,9 +20,9 @@ struct KeptProjection {
 /// A folder with projections of earlier runs, of any materials. Runs may use it at the same time.
 struct ProjectionFolder {
     std::string path = {};  ///< empty: nothing is kept
-    /// All that f depends on, as text: checksums of the files that a specification names, and of
-    /// values of the BRDF, which may be a part of what it specifies.
-    std::function<std::string(const Brdf& brdf, const std::string& specification)> contentOf = {};
+    /// All that f depends on beside its name, as text: checksums of the files that specifications,
+    /// one a line, name, and of values of the BRDF.
+    std::function<std::string(const Brdf& brdf, const std::string& specifications)> contentOf = {};
     /// Takes a sentence about each file that is not as it was written.
     std::function<void(const std::string&)> tell = {};
 

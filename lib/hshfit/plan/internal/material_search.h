@@ -43,9 +43,6 @@ private:
 
     void addVersion(std::string spec, std::unique_ptr<Brdf> brdf);
     void addPart(Version& version, const std::string& split);
-    /// For projections of a version without what is split off.
-    tradeoff::KeepOptions keeping(const Version& version, const std::string& split,
-                                  const ProjectionOptions& projection) const;
     void considerOneChannel();
     void describeLight();
     /// The least order beyond which the light's bands change L by less than a quarter of the
