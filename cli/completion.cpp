@@ -28,7 +28,7 @@ std::string_view scriptOf(const std::string& shell) {
 /// A line of flags that the scripts know, then a line for each word, with its help after a tab.
 std::string linesOf(const Candidates& candidates, const std::string& shell) {
     std::string flags = "words";
-    const bool folders = candidates.files == Files::folder || candidates.files == Files::readFolder;
+    const bool folders = isFolder(candidates.files);
     if (folders)
         flags += " folders";
     else if (candidates.files != Files::none)

@@ -31,7 +31,7 @@ std::string typeWord(const CLI::App& command, const CLI::Option& option) {
     if (const Values* row = findValues(command, option)) {
         if (row->syntax == Syntax::light) return "LIGHT";
         if (row->syntax == Syntax::brdf) return "SPEC";
-        if (row->files == Files::folder || row->files == Files::readFolder) return "DIR";
+        if (isFolder(row->files)) return "DIR";
         if (row->files != Files::none) return "FILE";
         if (row->words) return row->syntax == Syntax::list ? "NAMES" : "NAME";
     }

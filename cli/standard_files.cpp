@@ -47,7 +47,7 @@ void acceptStandardStreams(CLI::App& command) {
     for (CLI::Option* option : command.get_options()) {
         const Values* row = findValues(command, *option);
         if (!row) continue;
-        if (row->files == Files::folder || row->files == Files::readFolder) {
+        if (isFolder(row->files)) {
             const std::string name = option->get_name();
             option->transform([name](const std::string& text) { return folderPath(text, name); });
         } else if (row->dash && row->files == Files::read) {

@@ -137,7 +137,7 @@ const Values* findValues(const CLI::App& command, const CLI::Option& option) {
 bool isWritten(const CLI::App& command, const CLI::Option& option) {
     const Values* row = findValues(command, option);
     return row && (row->files == Files::written || row->files == Files::folder ||
-                   row->files == Files::added);
+                   row->files == Files::added || row->files == Files::addedFolder);
 }
 
 std::vector<std::string> choicesOf(const CLI::Option& option) {

@@ -27,7 +27,11 @@ enum class Files {
     written,
     folder,  ///< that is written
     added,   ///< read if it is there, and added to from run to run
+    addedFolder,
 };
+constexpr bool isFolder(Files files) {
+    return files == Files::readFolder || files == Files::folder || files == Files::addedFolder;
+}
 
 /// The syntax of a value.
 enum class Syntax {

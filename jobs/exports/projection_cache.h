@@ -14,7 +14,7 @@ constexpr OptionRow cacheRow(Member path) {
     const OptionRow row{"cache", path,
                         "Folder that keeps projections from run to run, of plan, tradeoff and "
                         "choose alike; made if absent"};
-    return row.takes({.files = Files::added});
+    return row.takes({.files = Files::addedFolder});
 }
 
 /// Makes a folder ready for use, which is made if it is named and absent. Files that
