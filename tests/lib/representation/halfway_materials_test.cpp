@@ -206,8 +206,9 @@ TEST(HalfwayMaterials, LobesConvergeWithOrder) {
              {HalfwayOrders{2, 1, 1}, HalfwayOrders{5, 4, 3}, HalfwayOrders{9, 8, 6}}) {
             const double error = projectHalfway(*brdf, orders, options).steps[0].change;
             std::printf(" %.5f", error);
-            // GGX's own lobe is exact with one term.
-            EXPECT_LT(error, std::max(before, 1e-4)) << spec;
+            // With one term masking halves the loss of GGX, which is then exact; with more it does
+            // not, and the form goes without.
+            EXPECT_LT(error, std::max(before, 5e-4)) << spec;
             before = error;
         }
         std::printf("\n");
