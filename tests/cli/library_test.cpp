@@ -44,6 +44,15 @@ protected:
                       path(output));
     }
 
+    /// `eval` of the third material, 30 degrees on either side of the normal.
+    Json thirdMaterial(const Json& sidecar) const {
+        const std::string name = sidecar["materials"][2]["name"];
+        const Answer value =
+            run("eval '" + path("a.library") + ":" + name + "' --wi 30,180 --wo 30,0 --json");
+        EXPECT_EQ(value.code, 0) << name << ": " << value.err;
+        return Json::parse(value.out)["values"];
+    }
+
     /// No material falls back, and no picture is drawn.
     static constexpr const char* free = " --limit 10 --limit-maximum 10 --limit-flip 1";
 };
@@ -76,16 +85,10 @@ TEST_F(LibraryCommand, OneShaderForAllMaterials) {
     EXPECT_EQ(sidecar["table"]["data"]["width"], table["half"]);
     EXPECT_EQ(sidecar["table"]["error"], error);
     ASSERT_EQ(sidecar["tests"].size(), 48u);
-    const Json& test = sidecar["tests"][2 * 6 + 1];  // 30 degrees on either side of the normal
-    const std::string name = sidecar["materials"][2]["name"];
-    const Answer value =
-        run("eval '" + path("a.library") + ":" + name + "' --wi 30,180 --wo 30,0 --json");
-    ASSERT_EQ(value.code, 0) << value.err;
-    const Json f = Json::parse(value.out)["values"];
+    const Json f = thirdMaterial(sidecar), test = sidecar["tests"][2 * 6 + 1];
     for (std::size_t c = 0; c < 3; ++c)
         EXPECT_NEAR(std::log(test["value"][c].get<double>() + 1e-3),
-                    std::log(f[std::min(c, f.size() - 1)].get<double>() + 1e-3), error["largest"])
-            << name;
+                    std::log(f[std::min(c, f.size() - 1)].get<double>() + 1e-3), error["largest"]);
 }
 
 // Without a table the values to test by are those of `eval`, and there is one texture.
@@ -97,14 +100,9 @@ TEST_F(LibraryCommand, ExportWritesFunctionsAsConstants) {
     EXPECT_EQ(made["files"], Json({"a.coef.f16.bin", "a_hsh.glsl"}));
     const Json sidecar = Json::parse(read(path("out/a.hsh.json")));
     EXPECT_TRUE(sidecar["table"].is_null());
-    const Json& test = sidecar["tests"][2 * 6 + 1];  // 30 degrees on either side of the normal
-    const std::string name = sidecar["materials"][2]["name"];
-    const Answer value =
-        run("eval '" + path("a.library") + ":" + name + "' --wi 30,180 --wo 30,0 --json");
-    ASSERT_EQ(value.code, 0) << value.err;
-    const Json f = Json::parse(value.out)["values"];
+    const Json f = thirdMaterial(sidecar), test = sidecar["tests"][2 * 6 + 1];
     for (std::size_t c = 0; c < 3; ++c)
-        EXPECT_NEAR(test["value"][c], f[std::min(c, f.size() - 1)], 1e-9) << name;
+        EXPECT_NEAR(test["value"][c], f[std::min(c, f.size() - 1)], 1e-9);
 }
 
 // Pictures: tests/gpu/browser/three_module.mjs.

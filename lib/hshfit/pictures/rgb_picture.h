@@ -20,9 +20,9 @@ struct RgbPicture {
 };
 
 /// The exposure, in stops, at which 95 % of the pixels have their largest channel at or below
-/// `shownAsWhite`, but none that shows so what eight bits of sRGB tell from black no more beside
-/// the brightest pixel, a 3,295th of it: of a narrow highlight on black, rounding would be all
-/// there is to see. Rounded to a tenth; 0 for black.
+/// `shownAsWhite`. Where 95 % have less than a 3,295th of the brightest pixel, the first step of
+/// eight bits of sRGB above black, the exposure that shows this share of it as `shownAsWhite`: a
+/// narrow highlight on black would show rounding errors otherwise. Rounded to a tenth; 0 for black.
 double automaticExposure(const RgbPicture& picture);
 /// Likewise from the largest channel of each pixel.
 double automaticExposure(std::vector<float> largest);

@@ -1,6 +1,7 @@
 // Projections that are kept from run to run in a folder.
 
 #include "lib/formula_brdf.h"
+#include "temporary_folder.h"
 
 #include <hshfit/error.h>
 #include <hshfit/representation/named_arrays.h>
@@ -14,8 +15,6 @@
 #include <string>
 #include <vector>
 
-#include <unistd.h>
-
 namespace hshfit::tradeoff {
 namespace {
 
@@ -25,15 +24,12 @@ using test::FormulaBrdf;
 class KeptProjectionsTest : public testing::Test {
 protected:
     void SetUp() override {
-        std::string name = fs::temp_directory_path() / "hshfit-kept-XXXXXX";
-        ASSERT_NE(mkdtemp(name.data()), nullptr);
-        folder_.path = name;
+        folder_.path = temporary_.path();
         folder_.contentOf = [this](const Brdf&, const std::string& specification) {
             return content_ + specification;
         };
         folder_.tell = [this](const std::string& remark) { remarks_.push_back(remark); };
     }
-    void TearDown() override { fs::remove_all(folder_.path); }
 
     KeptProjections keeping(std::vector<std::string> bases = {}, double tolerance = 1e-4) const {
         return {f_,
@@ -55,6 +51,7 @@ protected:
         },
         {},
         {.nonNegative = true, .reciprocal = true, .isotropic = true, .mirrorSymmetric = true}};
+    test::TemporaryFolder temporary_;
     ProjectionFolder folder_;
     std::string content_ = "one";
     std::vector<std::string> remarks_;
