@@ -38,28 +38,31 @@ HalfwayAxes::HalfwayAxes(const HalfwayLobe& lobe) {
 }
 
 HalfwayPoint HalfwayAxes::at(const Constants& k, const Direction& wi, const Direction& wo) {
+    double tail;
+    HalfwayPoint p = unplaced(k, wi, wo, tail);
+    // Polynomials of x ask for its absolute error alone: log1p takes thrice the time.
+    p.place(std::cbrt(wi.z), std::cbrt(wo.z), std::log(tail) * k.perLog);
+    return p;
+}
+
+HalfwayPoint HalfwayAxes::unplaced(const Constants& k, const Direction& wi, const Direction& wo,
+                                   double& tail) {
     const double hx = wi.x + wo.x, hy = wi.y + wo.y, hz = wi.z + wo.z;
     const double across = hx * hx + hy * hy;
     // wi = -wo at the horizon has no half vector.
     const double square = std::max(across + hz * hz, leastSquare);
     const double gx = k.xx * hx + k.xy * hy, gy = k.yx * hx + k.yy * hy;
     const double stretched = gx * gx + gy * gy, radius = std::sqrt(stretched);
-    const double q = stretched / square;
-    const double ei = std::cbrt(wi.z), eo = std::cbrt(wo.z);
+    tail = 1 + stretched / square;
     HalfwayPoint p;
-    p.mean = (ei + eo) / 2;
-    p.product = ei * eo;
-    p.gap = eo - ei;
     p.v = std::min(1.0, std::sqrt(square) / 2);
-    // Polynomials of x ask for its absolute error alone: log1p takes thrice the time.
-    p.x = std::log(1 + q) * k.perLog;
     p.kappa = (wo.z - wi.z) / (2 * std::sqrt(across / square) + 1e-9);
     p.handed = wi.x * wo.y - wi.y * wo.x;
     p.cosine = radius > 0 ? gx / radius : 1;
     p.sine = radius > 0 ? gy / radius : 0;
     const double facing = k.masked ? wo.z * maskingOf(k, wi) + wi.z * maskingOf(k, wo)
                                    : wi.z * wo.z + (wi.z + wo.z) / 2;
-    p.weight = k.amplitude / ((1 + q) * (1 + q) * (facing + k.shelf));
+    p.weight = k.amplitude / (tail * tail * (facing + k.shelf));
     return p;
 }
 

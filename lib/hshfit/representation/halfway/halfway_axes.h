@@ -28,6 +28,13 @@ namespace hshfit::inline representation::inline halfway {
 /// then GGX's BRDF without Fresnel's reflectance, but for s. No angle is formed.
 struct HalfwayPoint {
     double mean, product, gap, v, x, kappa, handed, cosine, sine, weight;
+
+    void place(double ei, double eo, double onLobe) {
+        mean = (ei + eo) / 2;
+        product = ei * eo;
+        gap = eo - ei;
+        x = onLobe;
+    }
 };
 
 /// The axes for one lobe.
@@ -51,6 +58,10 @@ public:
         return at(constants_, wi, wo);
     }
     static HalfwayPoint at(const Constants& constants, const Direction& wi, const Direction& wo);
+    /// The same without the cube roots and the logarithm, which vector code has side by side:
+    /// HalfwayPoint::place sets what depends on them. `tail` is 1 + Q.
+    static HalfwayPoint unplaced(const Constants& constants, const Direction& wi,
+                                 const Direction& wo, double& tail);
 
 private:
     Constants constants_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hshfit::inline representation::inline halfway {
 namespace {
@@ -35,12 +36,19 @@ HalfwayRows rowsOf(const HalfwayTerms& terms, int powers) {
     return rows;
 }
 
-HalfwayRunLayout runOf(const HalfwayRun& run, const HalfwayRows& rows) {
+std::uint32_t padded(std::size_t count) {
+    return static_cast<std::uint32_t>((count + halfwayPadding - 1) / halfwayPadding *
+                                      halfwayPadding);
+}
+
+HalfwayRunLayout runOf(const HalfwayRun& run, const HalfwayRows& rows, std::size_t value) {
     const HalfwayTerm& t = run.term;
     HalfwayRunLayout out{.first = t.lobe ? rows.x : std::uint16_t{0},
                          .length = static_cast<std::uint16_t>(run.length),
                          .factors = {},
-                         .factorCount = 0};
+                         .factorCount = 0,
+                         .value = static_cast<std::uint32_t>(value),
+                         .stored = padded(run.length)};
     const auto times = [&](int row) {
         out.factors[out.factorCount++] = static_cast<std::uint16_t>(row);
     };
@@ -54,16 +62,53 @@ HalfwayRunLayout runOf(const HalfwayRun& run, const HalfwayRows& rows) {
     return out;
 }
 
-/// The place of a row of a block in the table of one pair.
+/// The place of a row of a block in the table of one pair, which has `functions` for each axis.
 std::uint16_t onePlace(std::uint16_t row, const HalfwayRows& rows, std::size_t functions) {
     if (row >= rows.powers) return static_cast<std::uint16_t>(4 * functions + row - rows.powers);
-    std::uint16_t axis = 0, first = 0;
+    std::size_t axis = 0;
+    std::uint16_t first = 0;
     for (const std::uint16_t start : {rows.x, rows.v, rows.product}) {
         if (row < start) break;
         first = start;
         ++axis;
     }
-    return static_cast<std::uint16_t>(4 * (row - first) + axis);
+    return static_cast<std::uint16_t>(axis * functions + row - first);
+}
+
+/// The runs as the kernel of one pair takes them.
+std::vector<HalfwayRunLayout> oneRunsOf(std::vector<HalfwayRunLayout> runs, std::size_t smooth,
+                                        const HalfwayRows& rows, std::size_t functions) {
+    for (HalfwayRunLayout& run : runs) {
+        run.first = onePlace(run.first, rows, functions);
+        for (std::uint16_t& factor : run.factors) factor = onePlace(factor, rows, functions);
+    }
+    const auto byShape = [](const HalfwayRunLayout& a, const HalfwayRunLayout& b) {
+        return std::pair(a.stored, a.factorCount) < std::pair(b.stored, b.factorCount);
+    };
+    const auto lobe = runs.begin() + static_cast<std::ptrdiff_t>(smooth);
+    std::stable_sort(runs.begin(), lobe, byShape);
+    std::stable_sort(lobe, runs.end(), byShape);
+    return runs;
+}
+
+/// The coefficients of a group of channels from the first on.
+template <class T>
+void appendGroup(const HalfwayExpansion& expansion, std::size_t firstChannel,
+                 HalfwayLayout<T>& layout) {
+    const HalfwayTerms& terms = expansion.terms();
+    const std::size_t group = std::min<std::size_t>(3, layout.channels - firstChannel);
+    const std::size_t begin = layout.values.size();
+    layout.values.resize(begin + group * layout.stored);
+    for (std::size_t r = 0; r < layout.runs.size(); ++r) {
+        const HalfwayRunLayout& run = layout.runs[r];
+        for (std::size_t i = 0; i < run.length; ++i) {
+            const std::size_t t = terms.position()[terms.runs()[r].first + i];
+            for (std::size_t c = 0; c < group; ++c) {
+                layout.values[begin + group * run.value + c * run.stored + i] =
+                    static_cast<T>(expansion.value(t, firstChannel + c) * norm(terms.list()[t]));
+            }
+        }
+    }
 }
 
 class HalfwayPairs final : public PairEvaluator {
@@ -93,37 +138,26 @@ HalfwayLayout<T> halfwayLayoutOf(const HalfwayExpansion& expansion) {
         layout.powers = std::max(layout.powers, run.term.power());
     layout.rows = rowsOf(terms, layout.powers);
     for (const HalfwayRun& run : terms.runs()) {
-        layout.runs.push_back(runOf(run, layout.rows));
+        layout.runs.push_back(runOf(run, layout.rows, layout.stored));
+        layout.stored += layout.runs.back().stored;
         layout.smoothRuns += run.term.lobe ? 0 : 1;
     }
-    for (std::size_t first = 0; first < layout.channels; first += 3) {
-        const std::size_t last = std::min(layout.channels, first + 3);
-        for (const std::size_t t : terms.position()) {
-            for (std::size_t c = first; c < last; ++c) {
-                const double value = expansion.value(t, c) * norm(terms.list()[t]);
-                layout.values.push_back(static_cast<T>(value));
-            }
-        }
-    }
-    layout.terms = terms.size();
-    layout.values.resize(layout.values.size() + 3);
+    for (std::size_t first = 0; first < layout.channels; first += 3)
+        appendGroup(expansion, first, layout);
     for (const HalfwayCeiling& ceiling : expansion.ceilings()) {
         for (const double value : {ceiling.smooth, ceiling.lobe, ceiling.top})
             layout.ceilings.push_back(static_cast<T>(value));
     }
     const HalfwayCounts& counts = terms.counts();
     const int most = std::max({counts.mean, counts.x, counts.v, counts.product});
-    for (int n = 0; n < most; ++n) {
-        layout.steps.push_back(static_cast<T>((2.0 * n + 1) / (n + 1)));
-        layout.steps.push_back(static_cast<T>(n / (n + 1.0)));
+    const std::size_t functions = (static_cast<std::size_t>(most) + 3) / 4 * 4;
+    for (std::size_t n = 0; n < functions; ++n) {
+        const auto degree = static_cast<T>(n);
+        layout.steps.push_back((2 * degree + 1) / (degree + 1));
+        layout.steps.push_back(degree / (degree + 1));
     }
-    const auto functions = static_cast<std::size_t>(most);
     layout.oneRows = 4 * functions + layout.rows.above - layout.rows.powers;
-    for (HalfwayRunLayout run : layout.runs) {
-        run.first = onePlace(run.first, layout.rows, functions);
-        for (std::uint16_t& factor : run.factors) factor = onePlace(factor, layout.rows, functions);
-        layout.oneRuns.push_back(run);
-    }
+    layout.oneRuns = oneRunsOf(layout.runs, layout.smoothRuns, layout.rows, functions);
     return layout;
 }
 template HalfwayLayout<float> halfwayLayoutOf(const HalfwayExpansion&);

@@ -147,10 +147,10 @@ void fillTable(const HalfwayLayout<T>& layout, const Pairs<T>& pairs, std::size_
               lanes, row(layout.rows.weight));
 }
 
-/// The sums of runs first .. last - 1 at the vectors from k on; `value` moves on.
+/// The sums of runs first .. last - 1 of a group of channels at the vectors from k on.
 template <std::size_t Channels, class T>
 void addRuns(const HalfwayLayout<T>& layout, std::size_t first, std::size_t last, const T* table,
-             std::size_t k, const T*& value, Vector<T> (&total)[Channels][unroll]) {
+             std::size_t k, const T* values, Vector<T> (&total)[Channels][unroll]) {
     const Lanes<T> lanes;
     const std::size_t step = hn::Lanes(lanes);
     const auto load = [&](std::size_t row, std::size_t n) {
@@ -162,11 +162,12 @@ void addRuns(const HalfwayLayout<T>& layout, std::size_t first, std::size_t last
         for (auto& row : part) {
             for (auto& p : row) p = hn::Zero(lanes);
         }
-        for (std::size_t i = 0; i < run.length; ++i, value += Channels) {
+        const T* value = values + Channels * run.value;
+        for (std::size_t i = 0; i < run.length; ++i, ++value) {
             Vector<T> along[unroll];
             for (std::size_t n = 0; n < unroll; ++n) along[n] = load(run.first + i, n);
             for (std::size_t c = 0; c < Channels; ++c) {
-                const Vector<T> coefficient = hn::Set(lanes, value[c]);
+                const Vector<T> coefficient = hn::Set(lanes, value[c * run.stored]);
                 for (std::size_t n = 0; n < unroll; ++n) {
                     part[c][n] = hn::MulAdd(coefficient, along[n], part[c][n]);
                 }
@@ -189,15 +190,14 @@ void sumChannels(const HalfwayLayout<T>& layout, const T* table, std::size_t fir
     const Lanes<T> lanes;
     const std::size_t step = hn::Lanes(lanes);
     for (std::size_t k = 0; k < block<T>; k += unroll * step) {
-        const T* value = values;
         Vector<T> total[2][Channels][unroll];
         for (auto& part : total) {
             for (auto& row : part) {
                 for (auto& t : row) t = hn::Zero(lanes);
             }
         }
-        addRuns<Channels, T>(layout, 0, layout.smoothRuns, table, k, value, total[0]);
-        addRuns<Channels, T>(layout, layout.smoothRuns, layout.runs.size(), table, k, value,
+        addRuns<Channels, T>(layout, 0, layout.smoothRuns, table, k, values, total[0]);
+        addRuns<Channels, T>(layout, layout.smoothRuns, layout.runs.size(), table, k, values,
                              total[1]);
         for (std::size_t c = 0; c < Channels; ++c) {
             const T* ceilings = layout.ceilings.data() + 3 * (firstChannel + c);
@@ -231,7 +231,7 @@ void evaluateHalfway(const HalfwayLayout<T>& layout, const DirectionBatch& wi,
             fillTable(layout, pairs, k, table.get());
         const std::size_t count = std::min(block<T>, wi.count - first);
         for (std::size_t c = 0; c < layout.channels; c += 3) {
-            const T* values = layout.values.data() + c * layout.terms;
+            const T* values = layout.values.data() + c * layout.stored;
             const std::size_t group = std::min<std::size_t>(3, layout.channels - c);
             if (group == 3) {
                 sumChannels<3, T>(layout, table.get(), c, values, sums);
@@ -275,9 +275,7 @@ bool evaluatedAlone(const HalfwayLayout<T>& layout, const DirectionBatch& wi,
                     const DirectionBatch& wo, std::size_t stride, T* out) {
     if (wi.count != 1 || layout.oneRows > HalfwayLayout<T>::mostOneRows) return false;
     if (*wi.z > 0 && *wo.z > 0) {
-        const HalfwayPoint point =
-            HalfwayAxes::at(layout.axes, {*wi.x, *wi.y, *wi.z}, {*wo.x, *wo.y, *wo.z});
-        evaluateHalfwayPair(layout, point, stride, out);
+        evaluateHalfwayPair(layout, {*wi.x, *wi.y, *wi.z}, {*wo.x, *wo.y, *wo.z}, stride, out);
     } else {
         for (std::size_t c = 0; c < layout.channels; ++c) out[c * stride] = 0;
     }

@@ -24,7 +24,13 @@ struct HalfwayRunLayout {
     std::uint16_t first, length;           ///< the rows of its functions
     std::array<std::uint16_t, 5> factors;  ///< rows of the functions that all have
     std::uint16_t factorCount;
+    /// Where its coefficients begin in a group: [channel of the group][i < stored], of which those
+    /// from `length` on are 0.
+    std::uint32_t value, stored;
 };
+
+/// Coefficients of a run are stored as a multiple of this.
+inline constexpr std::uint32_t halfwayPadding = 8;
 
 /// The halfway form laid out for vector code: runs over i, each with its coefficients for groups of
 /// up to three channels, in single or double precision.
@@ -39,14 +45,16 @@ struct HalfwayLayout {
     std::size_t channels = 0;
     std::vector<Run> runs;
     std::size_t smoothRuns = 0;  ///< those of the smooth exponent, which come first
-    std::size_t terms = 0;       ///< a channel
-    /// [group of three channels][run][i][channel of the group], and three more numbers
-    std::vector<T> values;
-    std::vector<T> ceilings;  ///< [channel][smooth, lobe, top]
-    /// The recurrence of Legendre's polynomials, p_{n+1} = a_n t p_n - b_n p_{n-1}, [n] = {a, b}.
+    std::size_t stored = 0;      ///< coefficients of a channel, with the padding of their runs
+    std::vector<T> values;       ///< [group of three channels], and in it as its runs say
+    std::vector<T> ceilings;     ///< [channel][smooth, lobe, top]
+    /// The recurrence of Legendre's polynomials, p_{n+1} = a_n t p_n - b_n p_{n-1}, [n] = {a, b},
+    /// for a multiple of four degrees.
     std::vector<T> steps;
-    /// `runs` for one pair alone, in whose table the functions of degree n along the mean, x, v and
-    /// the product follow each other at 4 n, and after all of them the other factors.
+    /// `runs` for one pair alone, in whose table the functions along the mean, x, v and the product
+    /// follow each other, as many as there are steps, and after them the other factors. Smooth runs
+    /// are first here too; within each part runs of one shape follow each other, so that the
+    /// processor foresees its branches.
     std::vector<Run> oneRuns;
     std::size_t oneRows = 0;
     static constexpr std::size_t mostOneRows = 1024;  ///< beyond these it is no faster
@@ -56,11 +64,11 @@ struct HalfwayLayout {
 template <class T>
 HalfwayLayout<T> halfwayLayoutOf(const HalfwayExpansion& expansion);
 
-/// f at a pair, out[channel * stride], where `oneRows` is at most `mostOneRows`.
-void evaluateHalfwayPair(const HalfwayLayout<float>& layout, const HalfwayPoint& point,
-                         std::size_t stride, float* out);
-void evaluateHalfwayPair(const HalfwayLayout<double>& layout, const HalfwayPoint& point,
-                         std::size_t stride, double* out);
+/// f at a pair above the horizon, out[channel * stride], where `oneRows` is at most `mostOneRows`.
+void evaluateHalfwayPair(const HalfwayLayout<float>& layout, const Direction& wi,
+                         const Direction& wo, std::size_t stride, float* out);
+void evaluateHalfwayPair(const HalfwayLayout<double>& layout, const Direction& wi,
+                         const Direction& wo, std::size_t stride, double* out);
 
 /// f at pairs k < count, out[channel * stride + k]. Runs code for the best instruction set that the
 /// machine has.
