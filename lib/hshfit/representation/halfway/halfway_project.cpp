@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t fewestPairs = 1 << 14;
 constexpr std::size_t heldOutPairs = 1 << 15, heldOutOfAll = 1 << 13;
 /// Steps from constants to what the pairs alone say, and those that the albedos add.
-constexpr int roughSteps = 8, fineSteps = 30;
+constexpr int roughSteps = 8, fineSteps = 40;
 
 /// Whether f of an isotropic BRDF changes when both directions are mirrored at a plane by more than
 /// the noise of measurements: by a fifth in the mean of |ln|, over pairs about the mirror direction

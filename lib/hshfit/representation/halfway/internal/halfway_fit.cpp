@@ -25,15 +25,29 @@ constexpr std::size_t mostHeld = std::size_t{1} << 23;
 /// The pull of coefficients to 0: what no sample sees stays small.
 constexpr double pull = 1e-6;
 /// Weights of the ways to draw pairs, by HalfwaySpread.
-constexpr std::array<double, halfwaySpreads> spreadWeights{1, 1, 3, 3, 0.3, 8};
+constexpr std::array<double, halfwaySpreads> spreadWeights{1, 1, 3, 3, 0.3, 8, 3};
+/// Pixels count in full where f cos(theta_i) is far above this multiple of the floor, a hundredth
+/// of the greatest mean albedo.
+constexpr double darkPixel = 10;
 
 double weightOf(HalfwaySpread spread) {
     return spreadWeights[static_cast<std::size_t>(spread)];
 }
 
+/// The weight of a pair where f has a value.
+double weightOf(const HalfwaySamples& samples, std::size_t k, double f, double floor) {
+    const HalfwaySpread spread = samples.spread[k];
+    if (spread != HalfwaySpread::seen) return weightOf(spread);
+    const double bright = f * samples.pairs[k].wi.z, share = bright / (bright + darkPixel * floor);
+    return weightOf(spread) * share * share;
+}
+
+/// The sum of the weights of the pairs that no picture picks: the loss is a mean over these, and
+/// those that are seen come on top.
 double weightOf(const HalfwaySamples& samples) {
     double sum = 0;
-    for (const HalfwaySpread spread : samples.spread) sum += weightOf(spread);
+    for (const HalfwaySpread spread : samples.spread)
+        sum += spread == HalfwaySpread::seen ? 0 : weightOf(spread);
     return sum;
 }
 
@@ -99,7 +113,7 @@ struct Descent {
     }
     /// Whether the values tried take the place of those before.
     bool judge(Eigen::VectorXd tried, double found) {
-        constexpr double settled = 5e-4, hopeless = 1e6;
+        constexpr double settled = 1e-4, hopeless = 1e6;
         const auto penalised = [](double of, const Eigen::VectorXd& at) {
             return of + pull / 2 * at.squaredNorm();
         };
@@ -182,7 +196,8 @@ void HalfwayErrors::addLosses(std::size_t first, std::size_t last, const Halfway
                 const std::size_t place = (first + k) * channels + c;
                 const double now = parts.smooth + parts.lobe + model_.floor;
                 const double error = std::log(now / (samples.values[place] + model_.floor));
-                const double weight = weightOf(samples.spread[first + k]);
+                const double weight =
+                    weightOf(samples, first + k, samples.values[place], model_.floor);
                 losses[c] += weight * huberOf(error, data_.huber);
                 residuals_[place] = {
                     1 / now * parts.smooth, 1 / now * parts.lobe, error,
@@ -261,8 +276,9 @@ double halfwayLoss(const HalfwayModel& model, const HalfwaySamples& samples, dou
     const std::vector<double> f = halfwayAt(model, samples.pairs, values);
     double sum = 0;
     for (std::size_t k = 0; k < f.size(); ++k) {
-        const double error = std::log((f[k] + model.floor) / (samples.values[k] + model.floor));
-        sum += weightOf(samples.spread[k / channels]) * huberOf(error, huber);
+        const double there = samples.values[k];
+        const double error = std::log((f[k] + model.floor) / (there + model.floor));
+        sum += weightOf(samples, k / channels, there, model.floor) * huberOf(error, huber);
     }
     return sum / (weightOf(samples) * static_cast<double>(channels));
 }

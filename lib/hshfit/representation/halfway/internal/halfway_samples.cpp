@@ -1,5 +1,6 @@
 #include <hshfit/representation/halfway/internal/halfway_samples.h>
 
+#include <hshfit/brdf/vectors.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
@@ -74,12 +75,27 @@ DirectionPair onLine(double a, double b, double c, double d) {
     return fromHalfDifference(thetaHalf, 2 * pi * d, pi / 2 * b, phiDifference);
 }
 
-/// The spread of a number of a sequence, in turns of 16: five uniform, six about the
-/// mirror direction, two on lines, two towards the horizon, one on the ridge; every sixth of the
-/// ridge is at normal incidence.
+/// A pixel of the disc as which a sphere is seen, by its distance from the middle and its turn, and
+/// a lamp to any side.
+DirectionPair onSphere(double distance, double turn, double lamp, double side) {
+    const double sine = std::sqrt(distance);
+    const Direction wo{sine * std::cos(2 * pi * turn), sine * std::sin(2 * pi * turn),
+                       std::sqrt(1 - distance)};
+    const Direction u = normalised(cross(wo.z < 0.9 ? Direction{0, 0, 1} : Direction{1, 0, 0}, wo));
+    const Direction v = cross(wo, u);
+    const double angle = radians(5 + 15 * std::floor(6 * lamp));
+    const Direction across = std::cos(2 * pi * side) * u + std::sin(2 * pi * side) * v;
+    return {std::cos(angle) * wo + std::sin(angle) * across, wo};
+}
+
+/// The spread of a number of a sequence: every fourth is seen; the others, in turns of 16, are five
+/// uniform, six about the mirror direction, two on lines, two towards the horizon, one on the
+/// ridge; every sixth of the ridge is at normal incidence.
 HalfwaySpread spreadOf(HalfwayPart part, std::size_t n) {
     using enum HalfwaySpread;
     if (part == HalfwayPart::heldOutUniform) return uniform;
+    if (n % 4 == 3) return seen;
+    n -= n / 4;
     constexpr std::array turns{uniform, mirror, uniform, mirror, line,    mirror,  uniform, mirror,
                                ridge,   mirror, uniform, line,   grazing, grazing, uniform, mirror};
     const HalfwaySpread spread = turns[n % turns.size()];
@@ -110,6 +126,8 @@ DirectionPair pairAt(const Sequence& sequence, std::size_t n, bool isotropic,
             const Direction other = directionFromAngles(pi / 2 * a, 2 * pi * c), top{0, 0, 1};
             return n / 96 % 2 == 0 ? DirectionPair{other, top} : DirectionPair{top, other};
         }
+        case HalfwaySpread::seen:
+            return onSphere(a, d, b, c);
     }
     return {onHemisphere(a, c), onHemisphere(b, d)};
 }

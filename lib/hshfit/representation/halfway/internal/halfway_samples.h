@@ -16,8 +16,10 @@ namespace hshfit::inline representation::inline halfway {
 ///     ridge    wi the mirror direction of wo
 ///     grazing  cosines by powers of ten from 1e-3, wi likewise or about the mirror direction
 ///     normal   wi or wo the normal
-enum class HalfwaySpread : unsigned char { uniform, mirror, line, ridge, grazing, normal };
-inline constexpr std::size_t halfwaySpreads = 6;
+///     seen     a pixel of a sphere under a lamp 5, 20, 35, 50, 65 or 80 degrees from the line of
+///              sight
+enum class HalfwaySpread : unsigned char { uniform, mirror, line, ridge, grazing, normal, seen };
+inline constexpr std::size_t halfwaySpreads = 7;
 
 /// Pairs of directions with f at each.
 struct HalfwaySamples {
