@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t fewestPairs = 1 << 14;
 constexpr std::size_t heldOutPairs = 1 << 15, heldOutOfAll = 1 << 13;
 /// Steps from constants to what the pairs alone say, and those that the albedos add.
-constexpr int roughSteps = 8, fineSteps = 40;
+constexpr int roughSteps = 8, fineSteps = 30;
 
 /// Whether f of an isotropic BRDF changes when both directions are mirrored at a plane by more than
 /// the noise of measurements: by a fifth in the mean of |ln|, over pairs about the mirror direction
@@ -110,6 +110,30 @@ private:
     std::size_t count_, done_ = 0;
 };
 
+/// The coefficients that the pairs alone lead to, with the lobe that they fit best.
+HalfwayValues begin(const HalfwaySamples& samples, const HalfwayTerms& terms,
+                    const HalfwaySymmetry& symmetry, double floor, HalfwayLobe& lobe,
+                    const std::function<void()>& stepDone) {
+    const HalfwaySamples few = thinned(samples, 8 * std::max(terms.size(), lobePairs / 8), false);
+    HalfwayValues best;
+    double least = std::numeric_limits<double>::infinity();
+    for (const LobeFound& found :
+         chooseLobes(thinned(samples, lobePairs, true), terms.orders(), symmetry, floor)) {
+        const HalfwayAxes axes(found.lobe);
+        const HalfwayModel model{terms, axes, floor};
+        HalfwayErrors errors(model, {few, nullptr, fineHuber});
+        HalfwayValues values =
+            descended(errors, startFrom(found, model, few, symmetry), roughSteps, stepDone);
+        const std::vector<double> losses = errors.losses(values);
+        const double loss = std::accumulate(losses.begin(), losses.end(), 0.0);
+        if (!(loss < least)) continue;
+        least = loss;
+        best = std::move(values);
+        lobe = found.lobe;
+    }
+    return best;
+}
+
 }  // namespace
 
 Representation projectHalfway(const Brdf& brdf, const HalfwayOrders& asked,
@@ -126,7 +150,7 @@ Representation projectHalfway(const Brdf& brdf, const HalfwayOrders& asked,
             "it fits up to {}",
             orders.half, orders.difference, orders.azimuth, terms.size(), mostHalfwayTerms));
     }
-    Steps steps(options.progress, static_cast<std::size_t>(roughSteps + fineSteps + 1));
+    Steps steps(options.progress, static_cast<std::size_t>(mostLobes * roughSteps + fineSteps + 1));
     const HalfwayAlbedo albedo = albedoOf(brdf, r.head.reciprocal);
     const double floor = halfwayFloor(albedo);
     HalfwaySamples samples;
@@ -134,18 +158,13 @@ Representation projectHalfway(const Brdf& brdf, const HalfwayOrders& asked,
     appendSamples(brdf, HalfwayPart::fitted, 0,
                   std::min(pairs, std::max(options.maxEvaluations, fewestPairs)), samples);
 
+    const auto stepDone = [&] { steps.done(); };
     HalfwayArray content;
-    const LobeFound found = chooseLobe(thinned(samples, lobePairs, true), orders, symmetry, floor);
-    content.lobe = found.lobe;
+    const HalfwayValues start = begin(samples, terms, symmetry, floor, content.lobe, stepDone);
     const HalfwayAxes axes(content.lobe);
     const HalfwayModel model{terms, axes, floor};
-    const HalfwaySamples few = thinned(samples, 8 * std::max(terms.size(), lobePairs / 8), false);
-    const auto stepDone = [&] { steps.done(); };
-    HalfwayErrors rough(model, {few, nullptr, fineHuber}),
-        fine(model, {samples, &albedo, fineHuber});
-    const HalfwayValues values = descended(
-        fine, descended(rough, startFrom(found, model, few, symmetry), roughSteps, stepDone),
-        fineSteps, stepDone);
+    HalfwayErrors fine(model, {samples, &albedo, fineHuber});
+    const HalfwayValues values = descended(fine, start, fineSteps, stepDone);
     content.halfway = {.shape = {r.head.channels.count(), terms.size()}, .values = {}};
     content.halfway.values.assign(values.data(), values.data() + values.size());
     content.ceilings = halfwayCeilings(model, samples, values);

@@ -113,7 +113,7 @@ struct Descent {
     }
     /// Whether the values tried take the place of those before.
     bool judge(Eigen::VectorXd tried, double found) {
-        constexpr double settled = 1e-4, hopeless = 1e6;
+        constexpr double settled = 5e-4, hopeless = 1e6;
         const auto penalised = [](double of, const Eigen::VectorXd& at) {
             return of + pull / 2 * at.squaredNorm();
         };

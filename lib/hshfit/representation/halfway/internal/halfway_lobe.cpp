@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
-#include <limits>
 #include <vector>
 
 namespace hshfit::inline representation::inline halfway {
@@ -29,6 +28,8 @@ constexpr double clearly = 0.5;
 constexpr std::array shelves{0.05, 0.01, 0.002}, maskedShelves{0.05, 0.002, 2e-4};
 constexpr std::array ratios{1.5, 2.5, 4.0, 7.0, 12.0};
 constexpr int turns = 8;
+/// The factor by which widths of lobes that are tried with all terms differ at least.
+constexpr double otherWidth = 1.5;
 /// By which each of two widths is changed in the end.
 constexpr std::array refinements{1.2, 1.07};
 
@@ -42,10 +43,14 @@ HalfwayLobe lobeOf(double width, double ratio, double turn, double shelf, bool m
     return {held(width * root), held(width / root), inSingle(turn), inSingle(shelf), masked};
 }
 
+double widthOf(const HalfwayLobe& lobe) {
+    return std::sqrt(lobe.along * lobe.across);
+}
+
 /// Lobes with the ratio and the turn of one, its width times each factor, and each shelf.
 std::vector<HalfwayLobe> about(const HalfwayLobe& lobe, std::initializer_list<double> factors,
                                bool masked) {
-    const double width = std::sqrt(lobe.along * lobe.across), ratio = lobe.along / lobe.across;
+    const double width = widthOf(lobe), ratio = lobe.along / lobe.across;
     std::vector<HalfwayLobe> lobes;
     for (const double factor : factors) {
         for (const double shelf : masked ? maskedShelves : shelves) {
@@ -59,7 +64,7 @@ std::vector<HalfwayLobe> about(const HalfwayLobe& lobe, std::initializer_list<do
 
 /// The lobes about one whose widths are each by a step wider, as they are, or narrower.
 std::vector<HalfwayLobe> besides(const HalfwayLobe& lobe, double step) {
-    const double width = std::sqrt(lobe.along * lobe.across), ratio = lobe.along / lobe.across;
+    const double width = widthOf(lobe), ratio = lobe.along / lobe.across;
     std::vector<HalfwayLobe> lobes;
     for (const double along : {step, 1.0, 1 / step}) {
         for (const double across : {step, 1.0, 1 / step}) {
@@ -79,33 +84,52 @@ public:
 
     /// A lobe whose loss is below `share` of the least so far takes its place.
     void add(const std::vector<HalfwayLobe>& lobes, double share = 1) {
-        std::vector<double> losses(lobes.size());
-        std::vector<HalfwayValues> values(lobes.size());
+        const std::size_t before = all_.size();
+        all_.resize(before + lobes.size());
         tbb::parallel_for(std::size_t{0}, lobes.size(),
-                          [&](std::size_t k) { losses[k] = fit(lobes[k], values[k]); });
-        const auto least = std::ranges::min_element(losses);
-        if (!(*least < share * least_)) return;
-        const auto k = static_cast<std::size_t>(least - losses.begin());
-        least_ = *least;
-        best_ = {lobes[k], terms_.orders(), std::move(values[k])};
+                          [&](std::size_t k) { all_[before + k] = fit(lobes[k]); });
+        const auto least = std::ranges::min_element(
+            all_.begin() + static_cast<std::ptrdiff_t>(before), all_.end(), {}, &LobeFound::loss);
+        if (before == 0 || least->loss < share * best().loss)
+            best_ = static_cast<std::size_t>(least - all_.begin());
     }
-    const LobeFound& best() const { return best_; }
+    const LobeFound& best() const { return all_[best_]; }
+
+    /// The best, and after it the best of other widths.
+    std::vector<LobeFound> bestOfWidths(std::size_t count) const {
+        std::vector<LobeFound> chosen{best()};
+        while (chosen.size() < count) {
+            const LobeFound* next = nullptr;
+            for (const LobeFound& one : all_) {
+                const bool other = std::ranges::all_of(chosen, [&](const LobeFound& before) {
+                    const double ratio = widthOf(one.lobe) / widthOf(before.lobe);
+                    return std::max(ratio, 1 / ratio) > otherWidth;
+                });
+                if (other && (!next || one.loss < next->loss)) next = &one;
+            }
+            if (!next) break;
+            chosen.push_back(*next);
+        }
+        return chosen;
+    }
 
 private:
-    double fit(const HalfwayLobe& lobe, HalfwayValues& values) const {
+    LobeFound fit(const HalfwayLobe& lobe) const {
         const HalfwayAxes axes(lobe);
         const HalfwayModel model{terms_, axes, floor_};
         HalfwayErrors errors(model, {grey_, nullptr, roughHuber});
-        values = descended(errors, halfwayStart(model, grey_), trialSteps);
+        HalfwayValues values = descended(errors, halfwayStart(model, grey_), trialSteps);
         errors.countSquaresUpTo(fineHuber);
         values = descended(errors, std::move(values), trialSteps);
-        return errors.losses(values).front();
+        const double loss = errors.losses(values).front();
+        return {lobe, terms_.orders(), std::move(values), loss};
     }
 
     const HalfwaySamples& grey_;
     const HalfwayTerms& terms_;
-    double floor_, least_ = std::numeric_limits<double>::infinity();
-    LobeFound best_;
+    double floor_;
+    std::vector<LobeFound> all_;
+    std::size_t best_ = 0;
 };
 
 /// sin(theta_h) where f about the mirror direction has fallen to half between its peak and its
@@ -148,8 +172,8 @@ std::size_t halfwayPairsFor(const HalfwayTerms& terms, bool isotropic) {
     return std::max(isotropic ? isotropicPairs : anisotropicPairs, pairsPerTerm * terms.size());
 }
 
-LobeFound chooseLobe(const HalfwaySamples& grey, const HalfwayOrders& orders,
-                     const HalfwaySymmetry& symmetry, double floor) {
+std::vector<LobeFound> chooseLobes(const HalfwaySamples& grey, const HalfwayOrders& orders,
+                                   const HalfwaySymmetry& symmetry, double floor) {
     const HalfwayOrders smaller{std::min(orders.half, few.half),
                                 std::min(orders.difference, few.difference),
                                 std::min(orders.azimuth, few.azimuth)};
@@ -182,7 +206,7 @@ LobeFound chooseLobe(const HalfwaySamples& grey, const HalfwayOrders& orders,
     if (!symmetry.isotropic) {
         for (const double step : refinements) trials.add(besides(trials.best().lobe, step));
     }
-    return trials.best();
+    return trials.bestOfWidths(mostLobes);
 }
 
 HalfwayValues startFrom(const LobeFound& found, const HalfwayModel& model,
@@ -200,8 +224,12 @@ HalfwayValues startFrom(const LobeFound& found, const HalfwayModel& model,
     const std::vector<double> now = halfwayAt(model, samples.pairs, values);
     for (std::size_t c = 0; c < channels; ++c) {
         std::vector<double> ratios;
-        for (std::size_t k = c; k < now.size(); k += channels)
-            ratios.push_back((samples.values[k] + 1e-2 * model.floor) / (now[k] + model.floor));
+        for (std::size_t k = c; k < now.size(); k += channels) {
+            // Where both are black they say nothing.
+            if (std::max(samples.values[k], now[k]) > model.floor)
+                ratios.push_back((samples.values[k] + 1e-2 * model.floor) / (now[k] + model.floor));
+        }
+        if (ratios.empty()) continue;
         const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
         std::nth_element(ratios.begin(), middle, ratios.end());
         const double shift = std::log(*middle);

@@ -3,6 +3,7 @@
 #include <hshfit/representation/halfway/internal/halfway_fit.h>
 
 #include <cstddef>
+#include <vector>
 
 namespace hshfit::inline representation::inline halfway {
 
@@ -11,6 +12,8 @@ namespace hshfit::inline representation::inline halfway {
 inline constexpr double roughHuber = 1, fineHuber = 0.05;
 /// Pairs that the lobe is chosen by.
 inline constexpr std::size_t lobePairs = 10000;
+/// Lobes that are tried with all terms.
+inline constexpr std::size_t mostLobes = 3;
 
 /// e of ln(f + e): a thousandth of the greatest mean albedo.
 double halfwayFloor(const HalfwayAlbedo& albedo);
@@ -23,15 +26,18 @@ struct LobeFound {
     HalfwayLobe lobe;
     HalfwayOrders orders;
     HalfwayValues values;
+    double loss;
 };
 
 /// The lobe whose form of few terms has the least loss over samples of one channel: of widths from
 /// the half width of the peak to 0.9, then, where f is not isotropic, of ratios of the widths to
 /// 12, and where it is not bilateral, of turns; then of shelves; then with Smith's masking, or
 /// without it where f is not isotropic, if that halves the loss; then, where f is not isotropic, of
-/// both widths in small steps. All are numbers of single precision.
-LobeFound chooseLobe(const HalfwaySamples& grey, const HalfwayOrders& orders,
-                     const HalfwaySymmetry& symmetry, double floor);
+/// both widths in small steps. All are numbers of single precision. After it come
+/// others, up to `mostLobes` in all, each the best of those that are wider or narrower by a factor
+/// of 1.5 than the ones before: few terms may prefer a lobe that all terms do not.
+std::vector<LobeFound> chooseLobes(const HalfwaySamples& grey, const HalfwayOrders& orders,
+                                   const HalfwaySymmetry& symmetry, double floor);
 
 /// Coefficients of all terms and channels to begin with: those that the lobe was chosen with, in
 /// the brightness of each channel.

@@ -88,14 +88,11 @@ DirectionPair onSphere(double distance, double turn, double lamp, double side) {
     return {std::cos(angle) * wo + std::sin(angle) * across, wo};
 }
 
-/// The spread of a number of a sequence: every fourth is seen; the others, in turns of 16, are five
-/// uniform, six about the mirror direction, two on lines, two towards the horizon, one on the
-/// ridge; every sixth of the ridge is at normal incidence.
-HalfwaySpread spreadOf(HalfwayPart part, std::size_t n) {
+/// The spread of a number of a sequence, in turns of 16: five uniform, six about the mirror
+/// direction, two on lines, two towards the horizon, one on the ridge; every sixth of the ridge is
+/// at normal incidence.
+HalfwaySpread spreadOf(std::size_t n) {
     using enum HalfwaySpread;
-    if (part == HalfwayPart::heldOutUniform) return uniform;
-    if (n % 4 == 3) return seen;
-    n -= n / 4;
     constexpr std::array turns{uniform, mirror, uniform, mirror, line,    mirror,  uniform, mirror,
                                ridge,   mirror, uniform, line,   grazing, grazing, uniform, mirror};
     const HalfwaySpread spread = turns[n % turns.size()];
@@ -146,11 +143,20 @@ void appendSamples(const Brdf& brdf, HalfwayPart part, std::size_t first, std::s
                    HalfwaySamples& samples) {
     const bool isotropic = brdf.laws().isotropic;
     const Sequence sequence(isotropic ? 3 : 4);
-    const std::size_t before = samples.size();
-    for (std::size_t n = first; n < last; ++n) {
-        const HalfwaySpread spread = spreadOf(part, n);
-        const std::size_t place = static_cast<std::size_t>(part) * partStart + n;
-        const DirectionPair pair = pairAt(sequence, place, isotropic, spread);
+    const std::size_t before = samples.size(), start = static_cast<std::size_t>(part) * partStart;
+    for (std::size_t k = first; k < last; ++k) {
+        // Every fourth is seen; both kinds have numbers of their own.
+        const bool seen = k % 4 == 3 && part != HalfwayPart::heldOutUniform;
+        std::size_t n = k;
+        HalfwaySpread spread = HalfwaySpread::uniform;
+        if (seen) {
+            n = partStart / 2 + k / 4;
+            spread = HalfwaySpread::seen;
+        } else if (part != HalfwayPart::heldOutUniform) {
+            n = k - k / 4;
+            spread = spreadOf(n);
+        }
+        const DirectionPair pair = pairAt(sequence, start + n, isotropic, spread);
         if (!(pair.wi.z > 0 && pair.wo.z > 0)) continue;
         samples.pairs.push_back(pair);
         samples.spread.push_back(spread);
