@@ -12,7 +12,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <numeric>
+#include <span>
 
 namespace hshfit::jobs {
 namespace {
@@ -41,6 +43,23 @@ Seen seenOf(const ml::Library& library, const ml::LogSpace& space, const Listene
         if (progress) progress(++done, count);
     });
     return seen;
+}
+
+/// Refuses numbers of a file that no picture shows and no map places.
+void requireFinite(const std::string& path, const ml::Library& library, const Seen& seen,
+                   const ml::Similarity& similarity) {
+    const std::size_t count = library.materials.size();
+    for (std::size_t m = 0; m < count; ++m) {
+        const ml::MaterialLook& look = seen.looks[m];
+        const auto distances = std::span(similarity.distances).subspan(m * count, count);
+        const bool isFinite =
+            look.picture.notFinite == 0 && std::isfinite(look.luminance) &&
+            std::isfinite(look.chroma) && std::isfinite(look.gloss) &&
+            std::isfinite(std::accumulate(distances.begin(), distances.end(), 0.0));
+        if (!isFinite)
+            throw InputError(fmt::format("{}: '{}' has values that are not finite", path,
+                                         library.materials[m].name));
+    }
 }
 
 /// Turns an axis around where it falls with the values.
@@ -128,6 +147,7 @@ LibraryMap mapLibrary(const std::string& path, const std::string& output,
     const ml::LogSpace space;
     Seen seen = seenOf(library, space, listener);
     ml::Similarity similarity = ml::similarityOf(space, seen.logs);
+    requireFinite(path, library, seen, similarity);
     LibraryMap map{.library = path, .near = options.near, .kept = similarity.kept};
     map.distances = std::move(similarity.distances);
     std::vector<SpherePicture> pictures;

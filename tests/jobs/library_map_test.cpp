@@ -61,16 +61,16 @@ protected:
         return json::parse(answer);
     }
 
-    /// A library of this many materials of one constant each.
-    std::string flatLibrary(std::size_t count) const {
+    /// A library of this many materials of one constant, ln(f + 0.001), each.
+    std::string flatLibrary(std::size_t count, double level = -2) const {
         ml::Library library;
         for (std::size_t m = 0; m < count; ++m) {
             ml::Material material{.name = fmt::format("m{:04}", m),
                                   .source = "made",
                                   .kind = ml::Kind::polynomial,
                                   .channels = 1};
-            material.polynomial = {std::vector<double>(ml::logTerms().size(), 0.0), {-2.0}};
-            material.polynomial.exponents[0] = -2;
+            material.polynomial = {std::vector<double>(ml::logTerms().size(), 0.0), {level}};
+            material.polynomial.exponents[0] = level;
             material.bytes = material.polynomial.bytes();
             library.materials.push_back(std::move(material));
         }
@@ -212,6 +212,20 @@ TEST_F(LibraryMaps, ManyMaterialsAreRefusedAndOneIsEnough) {
     EXPECT_EQ(map.width, 1);
     EXPECT_EQ(map.height, 1);
     EXPECT_TRUE(map.materials[0].neighbours.empty());
+}
+
+// 60 is the greatest bound that a file may have.
+TEST_F(LibraryMaps, TheBrightestMaterialsOfAFileHaveFiniteNumbers) {
+    flatLibrary(3, 60);
+    const json found = map("3.library", "x.html");
+    for (const json& row : found["materials"]) {
+        EXPECT_GT(row["albedo"], 1e20);
+        EXPECT_TRUE(std::isfinite(row["place"]["x"].get<double>()));
+        for (const json& other : row["nearest"]) {
+            EXPECT_EQ(other["distance"], 0);
+            EXPECT_EQ(other["flip"], 0);
+        }
+    }
 }
 
 TEST_F(LibraryMaps, BadInputEndsInOneLineWithoutAFile) {

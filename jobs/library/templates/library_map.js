@@ -56,7 +56,8 @@ function boundsOf(range) {
 }
 
 function isShown(material) {
-  if (!material.name.toLowerCase().includes(element('name').value.trim().toLowerCase())) return false;
+  const part = element('name').value.trim().toLowerCase();
+  if (!material.name.toLowerCase().includes(part)) return false;
   if (element('onlyTwins').checked && !twinNames.has(material.name)) return false;
   for (const range of ranges) {
     const [low, high] = boundsOf(range);
@@ -92,12 +93,12 @@ function place() {
     gap = 8;
   // On a narrow screen the map is turned by a quarter.
   const upright = stage.clientWidth < 600 && data.width > data.height;
-  const at = (material) =>
-    upright ? [data.height - material.place.y, material.place.x] : [material.place.x, material.place.y];
+  const at = ({ place: { x, y } }) => (upright ? [data.height - y, x] : [x, y]);
   const [width, height] = (upright ? [data.height, data.width] : [data.width, data.height]).map(
     (length) => length * size + 2 * gap,
   );
   Object.assign(element('map').style, { width: `${width}px`, height: `${height}px` });
+  element('map').style.setProperty('--ring', `${Math.min(Math.max(size / 28, 1), 2)}px`);
   lines.setAttribute('width', width);
   lines.setAttribute('height', height);
   for (const material of materials) {
@@ -133,6 +134,18 @@ function fit() {
     size = Math.floor((stage.clientWidth - 16) / (upright ? data.height : data.width));
   element('size').value = Math.min(Math.max(size, 28), 96);
   place();
+  // A map that is larger than its place begins in its middle.
+  stage.scrollTo(
+    (stage.scrollWidth - stage.clientWidth) / 2, (stage.scrollHeight - stage.clientHeight) / 2);
+}
+
+// Scrolls the map, and not the page, where a material is out of sight.
+function reveal(material) {
+  const stage = element('stage'),
+    [x, y] = material.middle.map((at, k) => at - (k ? stage.scrollTop : stage.scrollLeft));
+  if (x > 0 && x < stage.clientWidth && y > 0 && y < stage.clientHeight) return;
+  stage.scrollTo(
+    material.middle[0] - stage.clientWidth / 2, material.middle[1] - stage.clientHeight / 2);
 }
 
 function factsOf(material) {
@@ -145,11 +158,15 @@ function factsOf(material) {
     ['gloss', percent(material.gloss)],
     ['colour', material.chroma > 0.5
       ? `chroma ${short(material.chroma)}, hue ${Math.round(material.hue)}°` : 'grey'],
-    ['error of ln(f + 0.001)', short(error.log)],
-    ['relative L2', short(error.relative_l2)],
-    ['largest error', `${short(error.maximum)} of ${short(error.largest)} 1/sr`],
-    ['FLIP', error.flip > 0 ? short(error.flip) : 'not measured'],
   ];
+  if (error.largest > 0) {
+    rows.push(['error of ln(f + 0.001)', short(error.log)],
+      ['relative L2', short(error.relative_l2)],
+      ['largest error', `${short(error.maximum)} of ${short(error.largest)} 1/sr`],
+      ['FLIP', error.flip > 0 ? short(error.flip) : 'not measured']);
+  } else {
+    rows.push(['errors', 'not measured']);
+  }
   if (material.fallback) rows.push(['own form', `it ${material.fallback}`]);
   const list = made('dl');
   for (const [name, value] of rows) {
@@ -189,6 +206,7 @@ function choose(material) {
     ...(material.nearest.length > 0 ? [nearestOf(material)] : []));
   history.replaceState(null, '', `#${encodeURIComponent(material.name)}`);
   draw();
+  reveal(material);
 }
 
 element('map').append(lines);
