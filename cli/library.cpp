@@ -9,6 +9,7 @@
 #include <hshfit/pictures/poor.h>
 
 #include <jobs/library/library_options.h>
+#include <jobs/library/material_json.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -30,26 +31,10 @@ struct LibraryArguments {
     jobs::LibraryOptions options;
 };
 
-Json errorJson(const ml::FormError& error) {
-    return {{"mean_log", error.meanLog},       {"log", error.logError},
-            {"relative_l2", error.relativeL2}, {"maximum", error.maximum},
-            {"largest", error.largest},        {"flip", error.flip}};
-}
-
 Json headOf(const LibraryArguments& arguments) {
     Json head = {{"format", "hshfit-library-answer"}, {"version", 1}, {"action", arguments.action}};
     if (!arguments.output.empty()) head["output"] = arguments.output;
     return head;
-}
-
-Json materialJson(const ml::Material& material) {
-    return {{"name", material.name},
-            {"source", material.source},
-            {"kind", ml::nameOf(material.kind)},
-            {"channels", material.channels},
-            {"bytes", material.bytes},
-            {"error", errorJson(material.error)},
-            {"fallback", material.fallback.empty() ? Json(nullptr) : Json(material.fallback)}};
 }
 
 std::string materialText(const ml::Material& m) {
@@ -149,7 +134,7 @@ void runEncode(const LibraryArguments& arguments, const Globals& globals) {
     const std::optional<std::string> poor = poorReason({}, encoded.picture);
     if (globals.json) {
         Json document = headOf(arguments);
-        document.update(materialJson(encoded.material));
+        document.update(jobs::materialJson(encoded.material));
         document["picture"] = pictureErrorJson(encoded.picture);
         document["poor"] = poor ? Json(*poor) : Json(nullptr);
         return printJson(document);
@@ -164,7 +149,7 @@ void runDecode(const LibraryArguments& arguments, const Globals& globals) {
     const ml::Material material = jobs::decodeMaterial(arguments.inputs[0], arguments.output);
     if (globals.json) {
         Json document = headOf(arguments);
-        document.update(materialJson(material));
+        document.update(jobs::materialJson(material));
         return printJson(document);
     }
     printText(std::string(materialHead) + materialText(material));
@@ -193,7 +178,7 @@ void runList(const LibraryArguments& arguments, const Globals& globals) {
     if (globals.json) {
         Json document = headOf(arguments), rows = Json::array();
         for (const ml::Material& material : library.materials)
-            rows.push_back(materialJson(material));
+            rows.push_back(jobs::materialJson(material));
         document["components"] = library.basis.size();
         document["widths"] = library.basis.widths;
         document["bytes"] = {{"basis", library.basis.bytes()}, {"materials", bytesOf(library)}};
@@ -318,6 +303,26 @@ void runExport(const LibraryArguments& arguments, const Globals& globals) {
     printText(text);
 }
 
+void runMap(const LibraryArguments& arguments, const Globals& globals) {
+    const jobs::LibraryMap map = jobs::mapLibrary(arguments.inputs[0], arguments.output,
+                                                  arguments.options.map, listenerFor(globals));
+    if (globals.json) {
+        Json document = headOf(arguments);
+        document.update(jobs::libraryMapJson(map));
+        return printJson(document);
+    }
+    std::string text =
+        fmt::format("{}: {} materials; the map keeps {:.0f} % of their squared distances\n",
+                    arguments.output, map.materials.size(), 100 * map.kept);
+    text += fmt::format("  {} near duplicates, FLIP of at most {:g}{}\n", map.duplicates.size(),
+                        map.near, map.duplicates.empty() ? "" : ":");
+    for (const jobs::NearDuplicates& pair : map.duplicates)
+        text += fmt::format("  {} and {}: FLIP {:.3f}, ln(f + 0.001) {:.3g}\n",
+                            map.materials[pair.first].material.name,
+                            map.materials[pair.second].material.name, pair.flip, pair.distance);
+    printText(text);
+}
+
 /// One thing that the command does.
 struct Action {
     std::string_view name;
@@ -338,6 +343,7 @@ constexpr Action actions[] = {
     {"decode", "LIBRARY:NAME", 1, 1, Action::Output::required, 0, runDecode},
     {"export", "LIBRARY", 1, 1, Action::Output::required, of::exported, runExport},
     {"mix", "LIBRARY:NAME LIBRARY:NAME…", 2, any, Action::Output::required, of::mix, runMix},
+    {"map", "LIBRARY", 1, 1, Action::Output::required, of::map, runMap},
     {"list", "LIBRARY", 1, 1, Action::Output::none, 0, runList},
     {"search", "LIBRARY MATERIAL", 2, 2, Action::Output::none, of::search, runSearch},
     {"reconstruct", "SAMPLES", 1, 1, Action::Output::required, of::reconstruct, runReconstruct},
@@ -395,10 +401,11 @@ void addLibrary(CLI::App& command, Globals& globals) {
     command.add_option(
         "INPUT", arguments->inputs,
         "learn: MATERIAL… (specifications, files, folders); merge: LIBRARY…; encode and search: "
-        "LIBRARY MATERIAL; decode and mix: LIBRARY:NAME; list, export: LIBRARY; reconstruct: "
+        "LIBRARY MATERIAL; decode and mix: LIBRARY:NAME; list, map, export: LIBRARY; reconstruct: "
         "SAMPLES; next: [SAMPLES]");
-    command.add_option("-o,--output", arguments->output,
-                       "The library, the material, of next a CSV, of export a folder");
+    command.add_option(
+        "-o,--output", arguments->output,
+        "The library, the material, of map a page, of next a CSV, of export a folder");
     addOptions(command, jobs::libraryOptions(), arguments->options);
     command.callback([arguments, &globals, &command] {
         const Action& action = *std::ranges::find(actions, arguments->action, &Action::name);

@@ -54,7 +54,10 @@ show library export out/studio.library --target glsl,bin -o out/studio --force
 holds "every material has its texels" \
     "$(number '@ materials over') == 7 && $(number 'functions, @ bytes') >= 56"
 holds "the table of the functions is within a tenth of f" "$(number 'off by @ at most') <= 0.1"
+show library map out/studio.library -o out/studio.html --force
+holds "every material is on the map" "$(number '@ materials; the map') == 7"
 
 echo
 echo "The plan is out/plan/plan.html; the table of the batch is out/batch/index.html;"
+echo "the map of the library is out/studio.html;"
 echo "the pictures are out/box, out/box_cache and out/ball."

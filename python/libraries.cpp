@@ -6,11 +6,13 @@
 #include <hshfit/material_library/library_file.h>
 #include <hshfit/material_library/log_terms.h>
 
+#include <jobs/library/library_map.h>
 #include <jobs/library/material_library.h>
 #include <jobs/library/material_samples.h>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
+#include <nlohmann/json.hpp>
 
 #include <memory>
 #include <string>
@@ -110,6 +112,17 @@ py::dict encoded(const Opened& self, const std::string& spec, const py::object& 
     return answer;
 }
 
+py::object mapped(const Opened& self, const py::object& file, double near,
+                  const py::object& progress) {
+    requireWithin("near", near, 0, 1);
+    const std::string output = pathOf(file, "file");
+    jobs::LibraryMap map;
+    watched(progress, {}, [&](const jobs::Listener& listener) {
+        map = jobs::mapLibrary(self.path, output, {.near = near}, listener);
+    });
+    return fromJson(jobs::libraryMapJson(map));
+}
+
 py::dict reconstructed(const Opened& self, const py::object& samples, const py::object& file,
                        const std::string& sigma, const py::object& progress) {
     const std::string from = pathOf(samples, "samples"), output = pathOf(file, "file");
@@ -181,6 +194,10 @@ void bindLibraries(py::module_& module) {
              py::arg("components") = 0, py::arg("progress") = none,
              "Encodes a material in the basis and writes a library of it alone; the answer has\n"
              "name, kind, bytes, picture and fallback, why it has a form of its own, or None.")
+        .def("map", mapped, py::arg("file"), py::kw_only(),
+             py::arg("near") = jobs::LibraryMapOptions{}.near, py::arg("progress") = none,
+             "Writes a page of all materials by similarity, .html; the answer has the keys of\n"
+             "`hshfit library map --json`. near: the FLIP of near duplicates, at most.")
         .def("reconstruct", reconstructed, py::arg("samples"), py::arg("file"), py::kw_only(),
              py::arg("sigma") = jobs::ReconstructOptions{}.sigma, py::arg("progress") = none,
              "A material from a file of samples, the library as prior; writes a library of it\n"

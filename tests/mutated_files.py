@@ -66,7 +66,8 @@ COMMANDS = {"pairs": ["eval lambert --pairs {path} -o {out}.csv"],
             "material_library": ["info {path}:b --json", "library list {path}",
                                  "library list {path} --json", "eval {path}:a --wi 30,0 --wo 45,10",
                                  "library decode {path}:a -o {out}.json",
-                                 "library search {path} lambert"]}
+                                 "library search {path} lambert",
+                                 "library map {path} -o {out}.html"]}
 # Readers of Mueller matrices, and elements beside the default.
 MUELLER, ELEMENTS = {"nist", "scatmech", "pbsdf"}, ["m01", "m12/m22", "m00/dolp", "all"]
 NUMBER = re.compile(rb"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")

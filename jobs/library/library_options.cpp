@@ -107,6 +107,11 @@ constexpr OptionRow libraryRows[] = {
               "functions as constants of the shader, exact and many times as slow"}
         .within(Bounds<double>{0, 10})
         .onlyFor(of::exported),
+    OptionRow{"near", at<&LibraryOptions::map, &LibraryMapOptions::near>,
+              "map: mean FLIP of the thumbnails of two neighbours up to which they are near "
+              "duplicates"}
+        .within(Bounds<double>{0, 1})
+        .onlyFor(of::map),
     OptionRow{"prefix", at<&LibraryOptions::exporting, &LibraryExportOptions::prefix>,
               "export: of the names in shaders"}
         .onlyFor(of::exported),

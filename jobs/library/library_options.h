@@ -1,6 +1,7 @@
 #pragma once
 
 #include "library_export.h"
+#include "library_map.h"
 #include "material_library.h"
 #include "material_samples.h"
 
@@ -23,6 +24,7 @@ enum : unsigned {
     reconstruct = 64,
     next = 128,
     exported = 256,
+    map = 512,
 };
 }  // namespace libraries
 
@@ -35,6 +37,7 @@ struct LibraryOptions {
     ReconstructOptions reconstruct = {};
     NextPairsOptions next = {};  ///< its library, sigma and count are those above
     LibraryExportOptions exporting = {};
+    LibraryMapOptions map = {};
 
     /// 0 for auto. Throws UsageError for other than auto and 1 to 512.
     std::size_t componentCount() const;

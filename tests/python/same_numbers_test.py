@@ -410,6 +410,11 @@ class SameNumbers(program.InFolder):
                               "two.library")
         for key in ("name", "kind", "bytes", "picture", "fallback"):
             self.assertEqual(done[key], theirs[key])
+        placed = ours.map("ours.html", near=0.2)
+        theirs = self.json_of("library", "map", "ours.library", "--near", "0.2", "-o",
+                              "theirs.html")
+        self.assertEqual(placed, {key: theirs[key] for key in placed})
+        self.assertEqual(self.bytes_of("ours.html"), self.bytes_of("theirs.html"))
         pairs = self.json_of("library", "next", "--library", "theirs.library", "--count", "5")
         mine = ours.next(5)
         self.assertEqual([row["expected_error"] for row in pairs["pairs"]], mine[:, 4].tolist())
