@@ -1,6 +1,6 @@
 #include <brdfs/fit/instrument/quadratures.h>
 
-#include <brdfs/fit/fit.h>
+#include <brdfs/fit/fit_result.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
