@@ -5,6 +5,7 @@
 #include <brdfs/fit/filled_in.h>
 #include <brdfs/fit/fit_search.h>
 #include <brdfs/fit/fit_statistics.h>
+#include <brdfs/fit/held_by_bounds.h>
 #include <brdfs/fit/minimum_study.h>
 #include <brdfs/fit/normal_equations.h>
 #include <brdfs/fit/parametric_sum.h>
@@ -72,25 +73,18 @@ void describe(const FitProblem& problem, const std::vector<double>& x, const Fit
     const std::size_t shapes = problem.shapeCount(), channels = problem.channels();
     const Bounds bounds = jointBounds(sum, channels);
     Equations equations = problem.joint(x, true);
-    std::vector<bool> fixed;
+    const HeldByBounds held = heldByBounds(x, equations, bounds);
+    const std::vector<bool>& fixed = held.fixed;
+    part.result.projectedGradient = held.projectedGradient;
     std::vector<double> slope;  // of the value by x
     std::vector<FittedParameter>& parameters = part.result.parameters;
     const std::vector<std::string> names = problem.samples().channels.names();
     for (std::size_t i = 0; i < x.size(); ++i) {
-        const double reach = 1e-9 * (1 + std::abs(x[i]));
         FittedParameter parameter;
-        // Resting at a bound, and not a minimum that happens to lie there.
-        const double pull = equations.gradient[i];
-        if (x[i] <= bounds.lower[i] + reach && pull >= 0) parameter.bound = "lower";
-        if (x[i] >= bounds.upper[i] - reach && pull <= 0) parameter.bound = "upper";
+        parameter.bound = held.bound[i];
         const double at = parameter.bound == "lower"   ? bounds.lower[i]
                           : parameter.bound == "upper" ? bounds.upper[i]
                                                        : x[i];
-        // Without a pull worth the name it could as well leave the bound: what the data say of it
-        // is then for the covariance to tell.
-        const double scale = std::sqrt(std::max(equations.hessian[i * x.size() + i], 0.0));
-        const double negligible = 1e-6 * std::sqrt(2 * equations.cost) + 1e-12;
-        fixed.push_back(!parameter.bound.empty() && std::abs(pull) > negligible * scale);
         if (i < shapes) {
             const ShapeParameter& shape = sum.shapes()[i];
             parameter.name = shape.name;
@@ -106,9 +100,6 @@ void describe(const FitProblem& problem, const std::vector<double>& x, const Fit
             slope.push_back(1);
             part.linear.push_back(at);
         }
-        if (!fixed[i] && scale > 0)
-            part.result.projectedGradient =
-                std::max(part.result.projectedGradient, std::abs(pull) / scale);
         parameters.push_back(std::move(parameter));
     }
     const std::vector<double> inverse = inverseOf(equations, fixed);
@@ -127,26 +118,12 @@ void describe(const FitProblem& problem, const std::vector<double>& x, const Fit
         if (!scansSuffice(problem, *part.freedom)) part.freedom.reset();
     }
     addChanges(problem, x, inverse, slope, options, part);
-    part.covariance = covariance.whole;
-    for (std::size_t i = 0; i < x.size(); ++i)
-        for (std::size_t j = 0; j < x.size(); ++j)
-            part.covariance[i * x.size() + j] *= slope[i] * slope[j];
+    part.covariance = covarianceOfValues(covariance, slope);
     reportUnseenLobes(
         {shapes, channels, shapes + problem.linearCount()},
         [&](std::span<const double> at) { return problem.joint(at, true); }, x, equations, fixed,
         covariance);
-    for (std::size_t i = 0; i < x.size(); ++i)
-        if (covariance.variance[i] >= 0)
-            parameters[i].standardError = std::sqrt(covariance.variance[i]) * slope[i];
-    part.result.correlations = covariance.correlations;
-    for (const auto& set : covariance.ambiguous) {
-        part.result.ambiguous.emplace_back();
-        for (const std::size_t i : set)
-            part.result.ambiguous.back().push_back(
-                parameters[i].channel.empty()
-                    ? parameters[i].name
-                    : fmt::format("{} {}", parameters[i].name, parameters[i].channel));
-    }
+    stateErrors(covariance, slope, part.result);
     if (!options.uncertainty.report) return;
     const StudiedMinimum minimum{problem, x,          equations, fixed,
                                  slope,   covariance, sandwich,  part.freedom.get()};
@@ -161,11 +138,7 @@ Part fitShared(const FitSamples& samples, const ParametricSum& sum, const FitOpt
     FitProblem problem(samples, sum, options.loss);
     const std::size_t parameters = problem.shapeCount() + problem.linearCount();
     const std::size_t values = samples.size() * problem.channels();
-    if (values < parameters)
-        throw NumericError(
-            fmt::format("'{}': {} values cannot determine {} free parameters; give some of them, "
-                        "or more samples",
-                        sum.spec(), values, parameters));
+    requireValues(sum.spec(), values, parameters);
     if (problem.whitening() && values * parameters > Whitening::most)
         throw UsageError(fmt::format(
             "{} values of correlated errors with {} parameters are more than a fit holds in "

@@ -206,10 +206,7 @@ FitResult fitWithInstrument(const FitSamples& samples, const FitOptions& options
         if (options.progress) options.progress(most, most);
         return result;
     }
-    throw NumericError(fmt::format(
-        "the quadratures over apertures did not settle in {} searches: each led to a material "
-        "that needs finer ones",
-        most));
+    throw unsettled(most);
 }
 
 std::vector<double> readingsOf(const FitResult& result, const FitSamples& samples) {

@@ -18,6 +18,13 @@ double statedAt(const FitSamples& samples, std::size_t k, const Instrument& inst
 
 }  // namespace
 
+NumericError unsettled(int searches) {
+    return NumericError(fmt::format(
+        "the quadratures over apertures did not settle in {} searches: each led to a material "
+        "that needs finer ones",
+        searches));
+}
+
 bool Quadratures::refine(const Brdf& material, const FitSamples& samples,
                          const Instrument& instrument) {
     const PatchSearch search = searchLevels(material, samples, instrument, levels);
