@@ -6,7 +6,7 @@
 #include <brdfs/fit/gaussian_mixture_json.h>
 #include <brdfs/measured/foreign.h>
 #include <brdfs/measured/material_library.h>
-#include <brdfs/measured/scattered/scattered.h>
+#include <brdfs/measured/own_samples.h>
 #include <brdfs/measured/scattered/xompt.h>
 #include <brdfs/presets/preset_collection.h>
 #include <hshfit/brdf/colour.h>
@@ -167,13 +167,14 @@ std::unique_ptr<Brdf> openTerm(std::string_view spec) {
     refuseModel(spec.substr(0, spec.find(':')));
 }
 
-/// One term with a factor: samples stay samples, so that fits and projections see them alone.
+/// One term with a factor: measured pairs stay measured pairs, so that fits and projections see
+/// them alone.
 std::unique_ptr<Brdf> scaledTerm(const WeightedSpec& term) {
     std::vector<Sum::Term> one;
     one.push_back({term.weight, openTerm(term.spec)});
-    const auto* scattered = dynamic_cast<const Scattered*>(one.front().brdf.get());
+    const auto* pairs = dynamic_cast<const HasMeasuredPairs*>(one.front().brdf.get());
     auto sum = std::make_unique<Sum>(std::move(one));
-    if (scattered) return scattered->scaled(term.weight, sum->name());
+    if (pairs) return pairs->scaled(term.weight, sum->name());
     return sum;
 }
 

@@ -29,13 +29,11 @@ private:
 
 int main() try {
     const auto basis = hshfit::bases::make("hsh", 3);
-    const hshfit::Basis* const bases[] = {basis.get()};
     const auto outgoing = hshfit::OutgoingSet::direction(0, 0);
-    const auto result =
-        hshfit::project(Brightening(), bases, outgoing, {.quantity = hshfit::Quantity::brdfCosine})
-            .front();
-    const double energy = result.coefficients.energy.value;
-    std::printf("%.12f %.6f\n", energy, result.captured.back() / energy);
+    const auto result = hshfit::project(Brightening(), *basis, outgoing,
+                                        {.quantity = hshfit::Quantity::brdfCosine});
+    std::printf("%.12f %.6f\n", result.coefficients.energy.value,
+                hshfit::capturedShare(result).value_or(0));
 } catch (const hshfit::Error& error) {
     std::fprintf(stderr, "own_brdf: %s\n", error.what());
     return static_cast<int>(error.code());

@@ -6,7 +6,7 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/coefficient_files/coefficient_file.h>
 #include <hshfit/error.h>
-#include <hshfit/projection/projection.h>
+#include <hshfit/projection/one_basis.h>
 
 int main(int argc, char** argv) try {
     if (argc != 3) throw hshfit::UsageError("usage: project_example SPEC OUT.json");
@@ -18,8 +18,7 @@ int main(int argc, char** argv) try {
     // f cos(theta_i) over the incoming direction, for each of the 1024 outgoing ones.
     hshfit::ProjectionOptions options;
     options.quantity = hshfit::Quantity::brdfCosine;
-    const hshfit::Basis* const bases[] = {basis.get()};
-    const auto projection = hshfit::project(*brdf, bases, outgoing, options).front();
+    const auto projection = hshfit::project(*brdf, *basis, outgoing, options);
     const auto& coefficients = projection.coefficients;
 
     // The captured energy, Eq. 15 of the HSH paper, for each number of bands.

@@ -4,18 +4,14 @@
 #include <brdfs/fit/covariance.h>
 #include <brdfs/fit/dense.h>
 #include <brdfs/fit/dispersed_profile.h>
+#include <brdfs/fit/fit_statistics.h>
+#include <brdfs/fit/held_by_bounds.h>
 #include <brdfs/fit/minimum_study.h>
-#include <brdfs/fit/percentiles.h>
 #include <brdfs/fit/propagated_errors.h>
 #include <brdfs/fit/resampling.h>
 #include <brdfs/fit/scan_spread.h>
-#include <hshfit/error.h>
-
-#include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -59,30 +55,6 @@ Report reportOf(const DispersedModel& model, const std::vector<double>& coeffici
         }
     }
     return report;
-}
-
-/// The coefficients that a bound holds; names it where a parameter is that coefficient.
-std::vector<bool> heldBy(const DispersedModel& model, const std::vector<double>& x,
-                         const Equations& equations, Report& report, double& projected) {
-    std::vector<bool> fixed;
-    const std::size_t n = x.size();
-    for (std::size_t j = 0; j < n; ++j) {
-        const double reach = 1e-9 * (1 + std::abs(x[j])), pull = equations.gradient[j];
-        std::string bound;
-        if (x[j] <= model.lower()[j] + reach && pull >= 0) bound = "lower";
-        if (x[j] >= model.upper()[j] - reach && pull <= 0) bound = "upper";
-        const double scale = std::sqrt(std::max(equations.hessian[j * n + j], 0.0));
-        const double negligible = 1e-6 * std::sqrt(2 * equations.cost) + 1e-12;
-        fixed.push_back(!bound.empty() && std::abs(pull) > negligible * scale);
-        if (!fixed[j] && scale > 0) projected = std::max(projected, std::abs(pull) / scale);
-        const bool alone = (report.slopes.row(at(j)).array() != 0).count() == 1;
-        if (alone) report.parameters[j].bound = bound;
-    }
-    return fixed;
-}
-
-Matrix mapped(const std::vector<double>& matrix, std::size_t n) {
-    return Eigen::Map<const Matrix>(matrix.data(), at(n), at(n));
 }
 
 /// Whether the data determine a parameter: every coefficient that it depends on, but for those that
@@ -137,37 +109,20 @@ std::vector<std::vector<double>> valuesAt(const DispersedModel& model,
 void addDraws(const DispersedProblem& problem, const Minimum& found, const FitOptions& options,
               FitResult& result) {
     const DispersedModel& model = problem.model();
-    const std::size_t count = options.uncertainty.bootstrap;
     const std::vector<std::string> names = problem.samples().channels.names();
-    std::vector<std::vector<double>> draws(count);
-    result.point.draws.assign(count, {});
-    std::atomic<std::size_t> done = 0;
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t b) {
+    result.point.draws.assign(options.uncertainty.bootstrap, {});
+    const auto refit = [&](std::size_t b) {
         const FitSamples own = redrawn(problem.samples(), options.seed, b);
         const DispersedProblem again(own, model, options.loss, problem.mix());
         const Minimum one = minimised(again, found.x, {});
-        if (one.converged) {
-            for (const FittedParameter& parameter : reportOf(model, one.x, names).parameters)
-                draws[b].push_back(parameter.value);
-            result.point.draws[b] = valuesAt(model, one.x, nullptr);
-        }
-        if (options.uncertainty.progress) options.uncertainty.progress(++done, count);
-    });
-    Uncertainty& uncertainty = *result.uncertainty;
-    uncertainty.bootstrapDraws = count;
-    std::size_t converged = 0;
-    for (const auto& draw : draws) converged += !draw.empty();
-    uncertainty.bootstrapFailures = count - converged;
-    if (converged < 2)
-        throw NumericError(fmt::format(
-            "{} of {} fits to resampled data converged; expected at least 2", converged, count));
-    for (std::size_t i = 0; i < result.parameters.size(); ++i) {
         std::vector<double> values;
-        for (const auto& draw : draws)
-            if (!draw.empty()) values.push_back(draw[i]);
-        uncertainty.parameters[i].bootstrap = summarised(std::move(values));
-    }
-    uncertainty.draws = std::move(draws);
+        if (!one.converged) return values;
+        for (const FittedParameter& parameter : reportOf(model, one.x, names).parameters)
+            values.push_back(parameter.value);
+        result.point.draws[b] = valuesAt(model, one.x, nullptr);
+        return values;
+    };
+    addBootstrap(refit, options.uncertainty, *result.uncertainty);
 }
 
 /// Errors of the parameters by all routes but the bootstrap.
@@ -176,9 +131,10 @@ void addErrors(const Report& report, const Covariance& independent, const Covari
                const std::vector<bool>& fixed, FitResult& result) {
     const std::size_t n = fixed.size();
     const std::vector<bool> known = determined(report, covariance, fixed);
-    const Matrix whole = report.slopes * mapped(covariance.whole, n) * report.slopes.transpose();
+    const Matrix whole =
+        report.slopes * squareMatrix(covariance.whole, n) * report.slopes.transpose();
     const Matrix sandwich =
-        report.slopes * mapped(independent.whole, n) * report.slopes.transpose();
+        report.slopes * squareMatrix(independent.whole, n) * report.slopes.transpose();
     result.correlations.assign(n * n, 0);
     for (std::size_t i = 0; i < n; ++i) {
         if (!known[i]) continue;
@@ -191,7 +147,8 @@ void addErrors(const Report& report, const Covariance& independent, const Covari
     if (!result.uncertainty) return;
     Uncertainty& uncertainty = *result.uncertainty;
     const double scale = uncertainty.stated ? 1 : uncertainty.reducedChiSquare();
-    const Matrix stated = scale * report.slopes * mapped(normal, n) * report.slopes.transpose();
+    const Matrix stated =
+        scale * report.slopes * squareMatrix(normal, n) * report.slopes.transpose();
     uncertainty.parameters.resize(n);
     uncertainty.covariance.assign(n * n, 0);
     for (std::size_t i = 0; i < n; ++i) {
@@ -206,30 +163,6 @@ void addErrors(const Report& report, const Covariance& independent, const Covari
         own.scans = *result.parameters[i].standardError;
         if (degrees[i] > 0) own.scanDegrees = degrees[i];
     }
-}
-
-using Slopes = Eigen::Map<const Eigen::VectorXd>;
-
-std::vector<double> leveragesOf(const WeightedRows& rows, const Matrix& inverse) {
-    std::vector<double> leverages;
-    for (std::size_t v = 0; v < rows.samples; ++v) {
-        const Slopes slopes(rows.slopes.data() + v * rows.columns, at(rows.columns));
-        leverages.push_back(slopes.dot(inverse * slopes));
-    }
-    return leverages;
-}
-
-std::vector<ScanSums> sumsOfScans(const WeightedRows& rows, const std::vector<std::size_t>& scans,
-                                  std::size_t n) {
-    const std::size_t count = *std::ranges::max_element(scans) + 1;
-    std::vector<ScanSums> sums(count, {Matrix::Zero(at(n), at(n)), Eigen::VectorXd::Zero(at(n))});
-    for (std::size_t v = 0; v < rows.samples; ++v) {
-        const Slopes slopes(rows.slopes.data() + v * rows.columns, at(n));
-        ScanSums& scan = sums[scans[v % scans.size()]];
-        scan.gradient += rows.residuals[v] * slopes;
-        scan.matrix += slopes * slopes.transpose();
-    }
-    return sums;
 }
 
 CommonChanges changesOf(const DispersedProblem& problem, const std::vector<double>& x,
@@ -272,8 +205,13 @@ void describeDispersed(const DispersedProblem& problem, const Minimum& found,
     const std::size_t n = found.x.size();
     Equations equations = problem.joint(found.x, true);
     Report report = reportOf(model, found.x, samples.channels.names());
-    const std::vector<bool> fixed =
-        heldBy(model, found.x, equations, report, result.projectedGradient);
+    const HeldByBounds held = heldByBounds(found.x, equations, {model.lower(), model.upper()});
+    const std::vector<bool>& fixed = held.fixed;
+    result.projectedGradient = held.projectedGradient;
+    // A bound of a coefficient is one of the parameter that is this coefficient alone.
+    for (std::size_t j = 0; j < n; ++j)
+        if ((report.slopes.row(at(j)).array() != 0).count() == 1)
+            report.parameters[j].bound = held.bound[j];
     result.parameters = report.parameters;
     const std::vector<double> inverse = inverseOf(equations, fixed);
     equations.spread = problem.joint(found.x, true, inverse).spread;
@@ -281,7 +219,7 @@ void describeDispersed(const DispersedProblem& problem, const Minimum& found,
     const Covariance independent = covariance;
     const bool correlated = samples.correlation.any();
     const bool byScan = !samples.scans.empty() && !correlated;
-    const Matrix unscaled = mapped(inverse, n) / problem.normalisation();
+    const Matrix unscaled = squareMatrix(inverse, n) / problem.normalisation();
     const bool common = !options.contributions.empty();
     const WeightedRows rows = options.uncertainty.report || byScan || common || correlated
                                   ? problem.weightedRows(found.x)
@@ -289,7 +227,7 @@ void describeDispersed(const DispersedProblem& problem, const Minimum& found,
     std::vector<double> degrees;
     if (byScan) {
         const double square = problem.normalisation() * problem.normalisation();
-        const std::vector<ScanSums> sums = sumsOfScans(rows, samples.scans, n);
+        const std::vector<ScanSums> sums = sumsOfScans(rows, samples.scans, n, 0);
         requireScans(sums.size(), model.parameterCount(), false);
         const Matrix spread = scanSpread(sums, unscaled) / square;
         degrees = scanDegrees(sums, unscaled, report.slopes);
@@ -308,21 +246,14 @@ void describeDispersed(const DispersedProblem& problem, const Minimum& found,
         result.uncertainty =
             influences({.residuals = rows.residuals,
                         .models = rows.values,
-                        .leverages = leveragesOf(rows, unscaled),
+                        .leverages = leveragesOf(rows, unscaled, 0),
                         .stated = !samples.sigmas.empty(),
                         .correlated = correlated,
                         .scans = byScan ? *std::ranges::max_element(samples.scans) + 1 : 0});
     std::vector<double> normal = inverse;
     for (double& value : normal) value /= problem.normalisation();
     addErrors(report, independent, covariance, normal, degrees, fixed, result);
-    for (const auto& set : covariance.ambiguous) {
-        result.ambiguous.emplace_back();
-        for (const std::size_t i : set) {
-            const FittedParameter& own = result.parameters[i];
-            result.ambiguous.back().push_back(
-                own.channel.empty() ? own.name : fmt::format("{} {}", own.name, own.channel));
-        }
-    }
+    result.ambiguous = labelsOf(covariance.ambiguous, result.parameters);
     result.point.isotropic = samples.isotropic;
     result.point.covariance = covariance.whole;
     valuesAt(model, found.x, &result.point);

@@ -1,7 +1,8 @@
 #pragma once
 
 #include <brdfs/fit/dispersed_problem.h>
-#include <brdfs/fit/fit.h>
+#include <brdfs/fit/fit_options.h>
+#include <brdfs/fit/fit_result.h>
 #include <brdfs/fit/minimise.h>
 
 #include <vector>

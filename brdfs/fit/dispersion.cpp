@@ -167,11 +167,7 @@ FitResult fitDispersed(const FitSamples& samples, const FitOptions& options) {
                                                : parseDispersion(options.dispersion);
     const DispersedModel model(options.model, samples.isotropic, wavelengths, laws);
     const std::size_t values = samples.size() * wavelengths.size();
-    if (values < model.count())
-        throw NumericError(
-            fmt::format("'{}': {} values cannot determine {} free parameters; give some of them, "
-                        "or more samples",
-                        options.model, values, model.count()));
+    requireValues(options.model, values, model.count());
     const Instrument& instrument = options.instrument;
     const FitSamples stated = withoutStated(samples, instrument);
     const std::vector<double> mix = instrument.slit.finite()
@@ -197,10 +193,7 @@ FitResult fitDispersed(const FitSamples& samples, const FitOptions& options) {
         addInstrument(samples, stated, readings, instrument, quadratures, result);
         return result;
     }
-    throw NumericError(fmt::format(
-        "the quadratures over apertures did not settle in {} searches: each led to a material "
-        "that needs finer ones",
-        most));
+    throw unsettled(most);
 }
 
 }  // namespace hshfit::brdfs

@@ -1,9 +1,7 @@
 #include <brdfs/fit/fit_samples.h>
 
 #include <brdfs/fit/sample_source.h>
-#include <brdfs/measured/gridded/slice.h>
-#include <brdfs/measured/merl.h>
-#include <brdfs/measured/scattered/scattered.h>
+#include <brdfs/measured/own_samples.h>
 #include <hshfit/accuracy/metrics.h>
 #include <hshfit/brdf/channel_view.h>
 #include <hshfit/each_in_parallel.h>
@@ -124,67 +122,22 @@ private:
     std::vector<double> interleaved_;
 };
 
-/// The solid angle between two polar angles, over 2 pi; nothing beyond a right angle.
-double band(double from, double to) {
-    return std::cos(std::max(from, 0.0)) - std::cos(std::min(to, pi / 2));
-}
+/// Hands cells of a table on to a Gatherer.
+class CellsOf : public CellReceiver {
+public:
+    explicit CellsOf(Gatherer& gatherer) : gatherer_(gatherer) {}
+    void reserve(std::size_t cells) override { gatherer_.reserve(cells); }
+    void belowHorizon() override { gatherer_.belowHorizon(); }
+    void invalid() override { gatherer_.invalid(); }
+    void add(const DirectionPair& pair, std::span<const double> f, double measure) override {
+        gatherer_.add(pair, f, measure);
+    }
 
-/// The share of d(wi) d(wo) of bins around the indices h (theta_h of them by `half`) and theta_d.
-template <class Half>
-double cellMeasure(const Half& half, double h, double thetaDifference, double step) {
-    const double low = h > 0.5 ? half(h - 0.5) : 0.0;
-    return band(low, half(h + 0.5)) * 4 * std::cos(thetaDifference) *
-           band(thetaDifference - step / 2, thetaDifference + step / 2);
-}
+private:
+    Gatherer& gatherer_;
+};
 
-void gatherMerl(const MerlBrdf& table, Gatherer& gatherer) {
-    const MerlLayout& layout = table.layout();
-    gatherer.reserve(layout.cells() * 4 / 5);
-    for (std::size_t h = 0; h < MerlLayout::halfCount; ++h)
-        for (std::size_t d = 0; d < MerlLayout::differenceCount; ++d) {
-            const double th = static_cast<double>(h), td = static_cast<double>(d);
-            const double measure = cellMeasure(merlHalfAngle, th, radians(td), radians(1));
-            for (std::size_t p = 0; p < layout.azimuthCount; ++p) {
-                const DirectionPair pair = merlDirections(th, td, static_cast<double>(p));
-                if (std::min(pair.wi.z, pair.wo.z) <= 1e-12) {
-                    gatherer.belowHorizon();
-                    continue;
-                }
-                const std::size_t cell = layout.cell(h, d, p);
-                const std::array f{table.stored(0, cell), table.stored(1, cell),
-                                   table.stored(2, cell)};
-                if (std::ranges::any_of(f, [](double v) { return v < 0; }))
-                    gatherer.invalid();
-                else
-                    gatherer.add(pair, f, measure);
-            }
-        }
-}
-
-void addIfCovered(const Brdf& data, const DirectionPair& pair, double measure, Gatherer& gatherer) {
-    if (std::min(pair.wi.z, pair.wo.z) <= 1e-12) return gatherer.belowHorizon();
-    unsigned char covered = 0;
-    data.coverage(pair.wo, {&pair.wi.x, &pair.wi.y, &pair.wi.z, 1}, &covered);
-    if (!covered) return gatherer.invalid();
-    gatherer.add(pair, evaluate(data, pair.wi, pair.wo), measure);
-}
-
-void gatherSlices(const SliceBrdf& slices, Gatherer& gatherer) {
-    const SliceLayout& layout = slices.layout();
-    const auto half = [&](double h) { return layout.thetaHalf(h); };
-    const double step = layout.thetaDifference(1) - layout.thetaDifference(0);
-    for (const double phi : layout.phi)
-        for (std::size_t d = 0; d < layout.differenceCount; ++d)
-            for (std::size_t h = 0; h < layout.halfCount; ++h) {
-                const double th = static_cast<double>(h);
-                const double thetaD = layout.thetaDifference(static_cast<double>(d));
-                addIfCovered(slices, fromHalfDifference(half(th), 0, thetaD, radians(phi)),
-                             cellMeasure(half, th, thetaD, step), gatherer);
-            }
-}
-
-void gatherScattered(const Scattered& scattered, Gatherer& gatherer) {
-    const Samples& samples = scattered.samples();
+void gatherPairs(const Samples& samples, Gatherer& gatherer) {
     const std::size_t channels = samples.channels.count();
     for (std::size_t k = 0; k < samples.size(); ++k)
         gatherer.add({samples.wi[k], samples.wo[k]},
@@ -355,36 +308,33 @@ FitSamples unmeasuredSamples(std::span<const DirectionPair> pairs, const Channel
 bool areMeasured(const Brdf& data) {
     const Brdf* source = &data;
     while (const auto* view = dynamic_cast<const ChannelView*>(source)) source = &view->seen();
-    return dynamic_cast<const Scattered*>(source) != nullptr;
+    return dynamic_cast<const HasMeasuredPairs*>(source) != nullptr;
 }
 
 FitSamples gatherSamples(const Brdf& data, const SampleOptions& options) {
     Gatherer gatherer(data, options);
     const Brdf& source = gatherer.source(data);
     SampleOrigin origin = SampleOrigin::nodes;
-    const auto* merl = dynamic_cast<const MerlBrdf*>(&source);
-    const auto* slices = dynamic_cast<const SliceBrdf*>(&source);
-    const auto* scattered = dynamic_cast<const Scattered*>(&source);
-    if (options.places == SamplePlaces::cells && !merl && !slices)
+    const bool nodes = options.places == SamplePlaces::nodes;
+    const auto* cells = dynamic_cast<const HasCells*>(&source);
+    const auto* pairs = nodes ? nullptr : dynamic_cast<const HasMeasuredPairs*>(&source);
+    if (options.places == SamplePlaces::cells && !cells)
         throw UsageError(
             fmt::format("{}: is no table with cells in half and difference angles", data.name()));
-    if (options.places == SamplePlaces::nodes) scattered = nullptr;
-    if (scattered) {
-        gatherScattered(*scattered, gatherer);
+    if (pairs) {
+        gatherPairs(pairs->samples(), gatherer);
         origin = SampleOrigin::measured;
-    } else if (merl && options.places != SamplePlaces::nodes) {
-        gatherMerl(*merl, gatherer);
-        origin = SampleOrigin::cells;
-    } else if (slices && options.places == SamplePlaces::cells) {
-        gatherSlices(*slices, gatherer);
+    } else if (cells && !nodes &&
+               (cells->cellsAreDefault() || options.places == SamplePlaces::cells)) {
+        CellsOf receiver(gatherer);
+        cells->giveCells(receiver);
         origin = SampleOrigin::cells;
     } else {
-        // A slice says of itself that it holds for pairs beside its plane.
-        gatherNodes(source, slices != nullptr, gatherer);
+        gatherNodes(source, cells && cells->holdsBeyondCoverage(), gatherer);
     }
     FitSamples samples = gatherer.finish(data, origin != SampleOrigin::measured);
     samples.origin = origin;
-    const SampleSource from{.samples = scattered ? &scattered->samples() : nullptr,
+    const SampleSource from{.samples = pairs ? &pairs->samples() : nullptr,
                             .places = gatherer.places(),
                             .converted = gatherer.hasViews(),
                             .name = data.name()};

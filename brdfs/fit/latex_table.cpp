@@ -211,7 +211,7 @@ private:
         if (own.size() < 2) return {};
         const auto nameOf = [&](std::size_t i) {
             const FittedParameter& p = result_.parameters[own[i]];
-            return latexText(p.channel.empty() ? p.name : fmt::format("{} {}", p.name, p.channel));
+            return latexText(p.label());
         };
         const auto at = [&](std::size_t i, std::size_t j) {
             return result_.correlations[own[i] * all + own[j]];

@@ -2,7 +2,6 @@
 
 #include <brdfs/fit/dense.h>
 #include <brdfs/fit/distributions.h>
-#include <brdfs/fit/scan_spread.h>
 #include <hshfit/linear_algebra/decompositions.h>
 
 #include <algorithm>
@@ -14,7 +13,7 @@ namespace {
 
 /// (J^T W J)^-1 from the inverse of the normalised matrix.
 Matrix unscaledInverse(const FitProblem& problem, std::span<const double> inverse, std::size_t n) {
-    return Eigen::Map<const Matrix>(inverse.data(), at(n), at(n)) / problem.normalisation();
+    return squareMatrix(inverse, n) / problem.normalisation();
 }
 
 /// The part of a matrix over all parameters that acts on one channel.
@@ -25,43 +24,6 @@ Matrix channelPart(const Matrix& whole, const WeightedRows& rows, std::size_t ch
         places.push_back(at(rows.place(i, channel, shapes)));
     return whole(places, places);
 }
-
-std::vector<double> leveragesOf(const WeightedRows& rows, const Matrix& inverse,
-                                std::size_t shapes) {
-    std::vector<double> leverages(rows.residuals.size());
-    for (std::size_t c = 0; c < rows.channels; ++c) {
-        const Matrix own = channelPart(inverse, rows, c, shapes);
-        for (std::size_t k = 0; k < rows.samples; ++k) {
-            const std::size_t value = c * rows.samples + k;
-            const Eigen::Map<const Vector> slopes(rows.slopes.data() + value * rows.columns,
-                                                  at(rows.columns));
-            leverages[value] = slopes.dot(own * slopes);
-        }
-    }
-    return leverages;
-}
-
-std::vector<ScanSums> sumsOfScans(const WeightedRows& rows, const std::vector<std::size_t>& scans,
-                                  std::size_t n, std::size_t shapes) {
-    const std::size_t count = *std::ranges::max_element(scans) + 1;
-    std::vector<ScanSums> sums(count, {Matrix::Zero(at(n), at(n)), Vector::Zero(at(n))});
-    for (std::size_t c = 0; c < rows.channels; ++c)
-        for (std::size_t k = 0; k < rows.samples; ++k) {
-            const std::size_t value = c * rows.samples + k;
-            const double* slopes = rows.slopes.data() + value * rows.columns;
-            ScanSums& scan = sums[scans[k]];
-            for (std::size_t i = 0; i < rows.columns; ++i) {
-                const Eigen::Index row = at(rows.place(i, c, shapes));
-                scan.gradient(row) += slopes[i] * rows.residuals[value];
-                for (std::size_t j = 0; j < rows.columns; ++j)
-                    scan.matrix(row, at(rows.place(j, c, shapes))) += slopes[i] * slopes[j];
-            }
-        }
-    return sums;
-}
-
-/// Above this number of values they hardly matter.
-constexpr std::size_t mostValues = 20'000;
 
 Matrix wholeRows(const WeightedRows& rows, std::size_t n, std::size_t shapes) {
     Matrix whole = Matrix::Zero(at(rows.channels * rows.samples), at(n));
@@ -87,13 +49,48 @@ std::size_t scanCount(const FitSamples& samples) {
 
 }  // namespace
 
+std::vector<double> leveragesOf(const WeightedRows& rows, const Matrix& inverse,
+                                std::size_t shapes) {
+    std::vector<double> leverages(rows.residuals.size());
+    for (std::size_t c = 0; c < rows.channels; ++c) {
+        const Matrix own = channelPart(inverse, rows, c, shapes);
+        for (std::size_t k = 0; k < rows.samples; ++k) {
+            const std::size_t value = c * rows.samples + k;
+            const Eigen::Map<const Vector> slopes(rows.slopes.data() + value * rows.columns,
+                                                  at(rows.columns));
+            leverages[value] = slopes.dot(own * slopes);
+        }
+    }
+    return leverages;
+}
+
+std::vector<ScanSums> sumsOfScans(const WeightedRows& rows, const std::vector<std::size_t>& scans,
+                                  std::size_t n, std::size_t shapes) {
+    const std::size_t count = *std::ranges::max_element(scans) + 1;
+    std::vector<ScanSums> sums(count, {Matrix::Zero(at(n), at(n)), Vector::Zero(at(n))});
+    for (std::size_t c = 0; c < rows.channels; ++c)
+        for (std::size_t k = 0; k < rows.samples; ++k) {
+            const std::size_t value = c * rows.samples + k;
+            const double* slopes = rows.slopes.data() + value * rows.columns;
+            ScanSums& scan = sums[scans[k % scans.size()]];
+            for (std::size_t i = 0; i < rows.columns; ++i) {
+                const Eigen::Index row = at(rows.place(i, c, shapes));
+                scan.gradient(row) += slopes[i] * rows.residuals[value];
+                for (std::size_t j = 0; j < rows.columns; ++j)
+                    scan.matrix(row, at(rows.place(j, c, shapes))) += slopes[i] * slopes[j];
+            }
+        }
+    return sums;
+}
+
 std::shared_ptr<const VarianceFreedom> freedomAt(const FitProblem& problem,
                                                  std::span<const double> x,
                                                  std::span<const double> inverse,
                                                  const std::vector<double>& slope) {
     const FitSamples& samples = problem.samples();
     const bool byScan = !samples.scans.empty();
-    if (!byScan && (samples.sums || samples.size() * problem.channels() > mostValues)) return {};
+    if (!byScan && (samples.sums || samples.size() * problem.channels() > mostFreedomValues))
+        return {};
     const std::size_t n = x.size(), shapes = problem.shapeCount();
     const WeightedRows rows = problem.weightedRows(x);
     Matrix own = unscaledInverse(problem, inverse, n);

@@ -3,6 +3,7 @@
 #include <brdfs/fit/covariance.h>
 #include <brdfs/fit/fit_search.h>
 #include <brdfs/fit/normal_equations.h>
+#include <brdfs/fit/scan_spread.h>
 #include <brdfs/fit/uncertainty.h>
 
 #include <cstddef>
@@ -13,8 +14,6 @@
 #include <vector>
 
 namespace hshfit::brdfs {
-
-class VarianceFreedom;
 
 /// A minimum of a problem as its description found it. x as in FitProblem::joint.
 struct StudiedMinimum {
@@ -45,6 +44,14 @@ std::vector<double> spreadOfScans(const FitProblem& problem, const VarianceFreed
 /// Whether it is that of scans.
 bool scansSuffice(const FitProblem& problem, const VarianceFreedom& byScan);
 
+/// Leverages of values, by (J^T W J)^-1. `shapes`: WeightedRows::place.
+std::vector<double> leveragesOf(const WeightedRows& rows, const Eigen::MatrixXd& inverse,
+                                std::size_t shapes);
+/// The sums of scans, in n parameters. Rows of several channels one after another have the scans of
+/// one channel again and again.
+std::vector<ScanSums> sumsOfScans(const WeightedRows& rows, const std::vector<std::size_t>& scans,
+                                  std::size_t n, std::size_t shapes);
+
 /// The values of a fit at its minimum.
 struct StudiedValues {
     std::vector<double> residuals = {};  ///< root(w) (measured - model)
@@ -71,6 +78,12 @@ void addErrors(std::span<const double> inverse, const std::vector<double>& slope
 /// Everything but bootstrap and profile.
 Uncertainty studied(const StudiedMinimum& minimum);
 
+/// The parameters' values of a fit to the data of draw b of a bootstrap (redrawn); empty where it
+/// did not converge. Called from several threads at once.
+using Refit = std::function<std::vector<double>(std::size_t b)>;
+/// Adds the draws, and the spread of each parameter over them. Throws NumericError where fewer than
+/// two of them converged.
+void addBootstrap(const Refit& refit, const UncertaintyOptions& options, Uncertainty& result);
 /// Adds fits to samples, or scans, drawn with replacement, each from the minimum on. Draw b depends
 /// on the seed and b alone.
 void addBootstrap(const StudiedMinimum& minimum, const UncertaintyOptions& options,

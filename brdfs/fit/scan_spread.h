@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -34,6 +35,9 @@ std::vector<double> scanDegrees(const std::vector<ScanSums>& scans, const Eigen:
 /// each value by the parameters [value, parameter].
 std::vector<double> valueDegrees(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& inverse,
                                  const Eigen::MatrixXd& of);
+
+/// Above this number of values, their degrees of freedom hardly matter, and take long.
+inline constexpr std::size_t mostFreedomValues = 20'000;
 
 /// Degrees of freedom of the variances of a fit, for combinations that are known later.
 class VarianceFreedom {

@@ -51,9 +51,7 @@ std::optional<PrintFigure> correlationFigure(const FitResult& result) {
         const FittedParameter& p = result.parameters[own[i]];
         if (i % step == 0) {
             panel.x.ticks.push_back({row, fmt::format("{}", i + 1)});
-            panel.y.ticks.push_back(
-                {row, unenhanced(fmt::format("{}{}{}  {}", p.name, p.channel.empty() ? "" : " ",
-                                             p.channel, i + 1))});
+            panel.y.ticks.push_back({row, unenhanced(fmt::format("{}  {}", p.label(), i + 1))});
         }
         for (std::size_t j = 0; j < own.size(); ++j) {
             map.x.push_back(static_cast<double>(j) + 1);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <brdfs/fit/fit.h>
+#include <brdfs/fit/fit_result.h>
 #include <hshfit/pages/print_figure.h>
 
 #include <optional>

@@ -3,6 +3,7 @@
 #include <brdfs/measured/measured_brdf.h>
 #include <brdfs/measured/merl_layout.h>
 #include <brdfs/measured/merl_positions.h>
+#include <brdfs/measured/own_samples.h>
 #include <brdfs/rows/format.h>
 #include <hshfit/files/mapped_file.h>
 
@@ -24,7 +25,7 @@ enum class MerlInterpolation {
 /// f is constant beyond the last node (theta_h > 88.01 deg, theta_d > 89 deg), and 0 where none
 /// of the cells is valid. NaN and infinite cells are taken as invalid, and checkIntact() throws
 /// InputError naming one that was read. Indices are accurate to 1e-9.
-class MerlBrdf : public MeasuredBrdf {
+class MerlBrdf : public MeasuredBrdf, public HasCells {
 public:
     /// Throws InputError if the dimensions or the size of the file are not those of a MERL file.
     explicit MerlBrdf(const std::string& path,
@@ -51,6 +52,8 @@ public:
     /// The value -1 counts as invalid, other values below zero as negative. Both are left out of f.
     Census census() const override;
     std::vector<Axis> axes() const override;
+    void giveCells(CellReceiver& receiver) const override;
+    bool cellsAreDefault() const override { return true; }
 
     const MerlLayout& layout() const { return layout_; }
     /// The stored value times merlScale: f at a node in 1/sr if it is valid.

@@ -1,5 +1,6 @@
-// Facts about a MERL table for `info` and the quadrature.
+// Facts about a MERL table for `info` and the quadrature; its cells for fits.
 
+#include <brdfs/measured/cell_measure.h>
 #include <brdfs/measured/merl.h>
 
 #include <fmt/core.h>
@@ -86,6 +87,28 @@ Census MerlBrdf::census() const {
         }
     }
     return census;
+}
+
+void MerlBrdf::giveCells(CellReceiver& receiver) const {
+    receiver.reserve(layout_.cells() * 4 / 5);
+    for (std::size_t h = 0; h < MerlLayout::halfCount; ++h)
+        for (std::size_t d = 0; d < MerlLayout::differenceCount; ++d) {
+            const double th = static_cast<double>(h), td = static_cast<double>(d);
+            const double measure = cellMeasure(merlHalfAngle, th, radians(td), radians(1));
+            for (std::size_t p = 0; p < layout_.azimuthCount; ++p) {
+                const DirectionPair pair = merlDirections(th, td, static_cast<double>(p));
+                if (std::min(pair.wi.z, pair.wo.z) <= 1e-12) {
+                    receiver.belowHorizon();
+                    continue;
+                }
+                const std::size_t cell = layout_.cell(h, d, p);
+                const std::array f{stored(0, cell), stored(1, cell), stored(2, cell)};
+                if (std::ranges::any_of(f, [](double v) { return v < 0; }))
+                    receiver.invalid();
+                else
+                    receiver.add(pair, f, measure);
+            }
+        }
 }
 
 std::vector<Axis> MerlBrdf::axes() const {

@@ -143,7 +143,7 @@ TextTable budgetTable(const brdfs::FitResult& result) {
     for (const brdfs::FittedParameter& p : result.parameters) {
         const brdfs::ParameterBudget* own = brdfs::budgetOf(result, p);
         if (!own || p.isScanScale()) continue;
-        std::string name = p.channel.empty() ? p.name : fmt::format("{} {}", p.name, p.channel);
+        std::string name = p.label();
         for (const brdfs::BudgetRow& row : own->rows) {
             table.rows.push_back(
                 {name, row.name, std::string(1, row.type), row.distribution,

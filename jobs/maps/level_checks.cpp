@@ -1,7 +1,8 @@
 #include "level_checks.h"
 
+#include <hshfit/material_maps/texel_errors.h>
+
 #include <algorithm>
-#include <cmath>
 #include <random>
 
 namespace hshfit::jobs {
@@ -54,31 +55,6 @@ std::vector<float> texelOf(const TexelKernel& kernel, const ModelLobes& lobes,
     return out;
 }
 
-/// |a - b| / |b| in the norm of the layout.
-double distance(const TexelLayout& layout, const std::vector<double>& a,
-                const std::vector<double>& b) {
-    double off = 0, whole = 0;
-    for (std::size_t k = 0; k < a.size(); ++k) {
-        const double weight = layout.weights()[k / layout.stride()];
-        off += weight * (a[k] - b[k]) * (a[k] - b[k]);
-        whole += weight * b[k] * b[k];
-    }
-    return whole > 0 ? std::sqrt(off / whole) : std::sqrt(off);
-}
-
-/// A stored texel in the order of the layout.
-std::vector<double> storedTexel(const MaterialMap& map, const Checked& texel) {
-    const TexelLayout& layout = map.sidecar().layout;
-    const Coefficients c = map.coefficients(texel.level, texel.column, texel.row);
-    std::vector<double> out(layout.floats(), 0.0);
-    for (std::size_t o = 0; o < layout.outgoing.size(); ++o)
-        for (std::size_t channel = 0; channel < layout.channels; ++channel)
-            for (std::size_t s = 0; s < layout.slots.size(); ++s)
-                out[o * layout.stride() + channel * layout.slots.size() + s] =
-                    c.at(o, channel)[layout.slots[s]];
-    return out;
-}
-
 }  // namespace
 
 std::vector<LevelCheck> checkLevels(const MaterialMap& map, ParameterMaps& maps,
@@ -122,9 +98,11 @@ std::vector<LevelCheck> checkLevels(const MaterialMap& map, ParameterMaps& maps,
         for (std::size_t v = 0; v < values; ++v)
             parameters[v] = static_cast<float>(checked.parameters[v] / count);
         const std::vector<float> averaged = texelOf(kernel, lobes, parameters, layout.floats());
-        errors[2 * k] = distance(layout, storedTexel(map, checked), checked.coefficients);
-        errors[2 * k + 1] =
-            distance(layout, {averaged.begin(), averaged.end()}, checked.coefficients);
+        errors[2 * k] =
+            relativeDistance(layout, storedTexel(map, checked.level, checked.column, checked.row),
+                             checked.coefficients);
+        errors[2 * k + 1] = relativeDistance(
+            layout, std::vector<double>(averaged.begin(), averaged.end()), checked.coefficients);
     }
     gatherValues(work.processes, texels.size(), errors);
     std::vector<LevelCheck> result;

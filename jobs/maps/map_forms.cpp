@@ -1,8 +1,8 @@
 #include "map_forms.h"
 
-#include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
 #include <hshfit/material_maps/cluster_encoder.h>
+#include <hshfit/material_maps/texel_errors.h>
 
 #include <fmt/format.h>
 
@@ -16,24 +16,6 @@ gpu::Number numberOf(const SvbrdfOptions& options) {
     if (gpu::isNormalised(number))
         throw UsageError("coefficients of maps are stored as float16 or float32");
     return number;
-}
-
-/// The errors of level 0.
-TexelErrors errorsOfEncoder(const TexelEncoder& encoder, const std::vector<float>& linear) {
-    const std::size_t n = encoder.linear(), count = linear.size() / n;
-    std::vector<float> errors(count);
-    eachInParallel(count, [&](std::size_t t) {
-        std::vector<std::byte> bytes(encoder.layers() * 16);
-        encoder.encode(0, {linear.data() + t * n, n}, {bytes.data(), 16, &errors[t]});
-    });
-    return errorsOf(errors);
-}
-
-std::size_t rankFor(const std::vector<TexelErrors>& errors, double error) {
-    const auto good =
-        std::ranges::find_if(errors, [&](const auto& e) { return e.maximum <= error; });
-    return std::min<std::size_t>(static_cast<std::size_t>(good - errors.begin()) + 1,
-                                 errors.size());
 }
 
 /// Errors of a form against BRDFs, where they are measured.
@@ -68,7 +50,7 @@ std::unique_ptr<TexelEncoder> clustersFor(MapWork& work, const SvbrdfOptions& op
                                   .count = count,
                                   .bytesOfTexel = 4,
                                   .sharedBytes = count * floats * sizeof(float),
-                                  .errors = errorsOfEncoder(*encoder, levels.front()),
+                                  .errors = errorsOf(*encoder, levels.front()),
                                   .pairs = measured(checks, *encoder)});
         if (!isAsked) continue;
         result.count = count;
@@ -131,7 +113,7 @@ MapForm formFor(MapWork& work, const SvbrdfOptions& options, Svbrdf& result, Pro
              .pairs = measured(checks, encoder.lowRank())});
     }
     const std::size_t rank = options.rank > 0 ? std::min(options.rank, principal.most())
-                                              : rankFor(errors, options.error);
+                                              : leastRank(errors, options.error);
     const LowRank lowRank = principal.lowRank(rank);
     if (options.form != "low-rank") {
         chosen.encoder =

@@ -8,6 +8,7 @@
 #include <hshfit/error.h>
 #include <hshfit/percent.h>
 #include <hshfit/pictures/poor.h>
+#include <hshfit/projection/one_basis.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/representation/halfway/halfway.h>
 
@@ -251,9 +252,8 @@ std::optional<int> sufficientOrder(const Brdf& source, const CoefficientHead& he
                         bases::find(head.basis).maxOrder >= trialOrder;
     try {
         const auto basis = bases::make(nested ? head.basis : "hsh", trialOrder);
-        const Basis* const one[] = {basis.get()};
-        const Projection trial = std::move(hshfit::project(
-            source, one, fewOf(head), {.quantity = head.quantity, .tolerance = trialTolerance})[0]);
+        const Projection trial = hshfit::project(
+            source, *basis, fewOf(head), {.quantity = head.quantity, .tolerance = trialTolerance});
         const Energy& energy = trial.coefficients.energy;
         if (!energy.finite || !(energy.value > 0)) return std::nullopt;
         const auto enough = std::ranges::find_if(
@@ -291,11 +291,9 @@ nlohmann::ordered_json poorJson(const Poor& poor) {
 
 std::optional<double> capturedShare(const Projection& projection, const Brdf& source) {
     const Coefficients& c = projection.coefficients;
-    if (c.leastSquares) return std::nullopt;
-    if (!c.energy.finite) return measuredShare(source, Reconstruction(c), c.outgoing, {});
-    if (!(c.energy.value > 0) || !std::isfinite(c.energy.value) || projection.captured.empty())
-        return std::nullopt;
-    return projection.captured.back() / c.energy.value;
+    if (!c.leastSquares && !c.energy.finite)
+        return measuredShare(source, Reconstruction(c), c.outgoing, {});
+    return hshfit::capturedShare(projection);
 }
 
 std::optional<double> capturedShare(const Representation& kept, const Brdf& source,

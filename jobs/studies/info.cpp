@@ -9,7 +9,7 @@
 #include <hshfit/quadrature/quadrature.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 
-#include <brdfs/measured/scattered/scattered.h>
+#include <brdfs/measured/own_samples.h>
 #include <brdfs/repair.h>
 
 #include <fmt/format.h>
@@ -103,7 +103,7 @@ Health healthOf(const Brdf& brdf, const Listener& listener) {
     // A search among samples takes some twenty times as long as a look into a table.
     const auto* view = dynamic_cast<const ChannelView*>(&brdf);
     const bool searched =
-        dynamic_cast<const brdfs::Scattered*>(view ? &view->seen() : &brdf) != nullptr;
+        dynamic_cast<const brdfs::HasMeasuredPairs*>(view ? &view->seen() : &brdf) != nullptr;
     if (!searched) options.albedoEvaluations *= 4;
     options.albedoEvaluations /= costOf(brdf);
     return examine(brdf, options);

@@ -13,6 +13,7 @@
 #include <hshfit/coefficients/outgoing.h>
 #include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/error.h>
+#include <hshfit/projection/one_basis.h>
 #include <hshfit/projection/projection.h>
 #include <hshfit/rotation/rotation.h>
 #include <hshfit/version.h>

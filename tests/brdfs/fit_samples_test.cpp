@@ -1,5 +1,6 @@
 #include <brdfs/catalog.h>
 #include <brdfs/fit/fit_samples.h>
+#include <brdfs/measured/own_samples.h>
 #include <brdfs/measured/scattered/astm.h>
 #include <hshfit/error.h>
 
@@ -9,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -17,6 +19,60 @@ namespace {
 
 std::string shared(const std::string& name) {
     return test::sharedFolder() + "/data/" + name;
+}
+
+/// f = 1, as a table of three cells that no reader made: one below the horizon, one
+/// not measured and one with a value that f has nowhere.
+class ThreeCells : public Brdf, public HasCells {
+public:
+    explicit ThreeCells(bool byDefault) : byDefault_(byDefault) {}
+    std::string name() const override { return "three cells"; }
+    const Channels& channels() const override { return channels_; }
+    const Laws& laws() const override { return laws_; }
+    void eval(const Direction&, DirectionBatch wi, double* out) const override {
+        std::fill_n(out, wi.count, 1.0);
+    }
+    void coverage(const Direction&, DirectionBatch wi, unsigned char* covered) const override {
+        std::fill_n(covered, wi.count, 0);
+    }
+    void giveCells(CellReceiver& receiver) const override {
+        receiver.reserve(1);
+        receiver.belowHorizon();
+        receiver.invalid();
+        const double f[] = {7};
+        receiver.add(pair, f, 0.25);
+    }
+    bool cellsAreDefault() const override { return byDefault_; }
+    bool holdsBeyondCoverage() const override { return true; }
+
+    DirectionPair pair{directionFromAngles(0.3, 0), directionFromAngles(0.5, 1)};
+
+private:
+    bool byDefault_;
+    Channels channels_ = Channels::grey();
+    Laws laws_{.isotropic = true};
+};
+
+/// A format needs no line in the fits: what it says of its cells decides where f is taken.
+TEST(FitSamples, OfATableThatNoFitKnowsAreTheCellsThatItGives) {
+    const ThreeCells ofCells(true), ofNodes(false);
+    for (const FitSamples& samples :
+         {gatherSamples(ofCells, {}), gatherSamples(ofNodes, {.places = SamplePlaces::cells})}) {
+        EXPECT_EQ(samples.origin, SampleOrigin::cells);
+        ASSERT_EQ(samples.size(), 1U);
+        EXPECT_EQ(samples.wiX[0], ofCells.pair.wi.x);
+        EXPECT_EQ(samples.wo[0].y, ofCells.pair.wo.y);
+        EXPECT_EQ(samples.value(0, 0), 7);
+        EXPECT_EQ(samples.masked.belowHorizon, 1U);
+        EXPECT_EQ(samples.masked.invalid, 1U);
+    }
+    for (const FitSamples& samples :
+         {gatherSamples(ofNodes, {}), gatherSamples(ofCells, {.places = SamplePlaces::nodes})}) {
+        EXPECT_EQ(samples.origin, SampleOrigin::nodes);
+        EXPECT_GT(samples.size(), 1000U);  // beyond the coverage, which is nothing
+        EXPECT_EQ(samples.masked.invalid, 0U);
+        EXPECT_EQ(samples.value(0, 0), 1);
+    }
 }
 
 /// A table seen as grey has the mean of its channels at each of its cells.

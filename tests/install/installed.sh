@@ -91,6 +91,11 @@ examples)
         >program.json
     cmp library.json program.json
     ./project_example phong:exponent=22 phong.json >/dev/null
+    # One pair by the fast path, in single precision, against the program.
+    echo '20 0 30 180' | ./one_pair_example library.json >pair
+    "$prefix"/bin/hshfit eval library.json --wi 20,0 --wo 30,180 --quiet | cat pair - |
+        awk 'NR == 1 { f = $1 } END { exit !((f / $NF - 1) ^ 2 < 1e-9) }' ||
+        fail "one_pair.cpp prints $(cat pair) of the coefficients of a Phong BRDF"
     # Without its module beside it the program says where that belongs; cli_install_test has it.
     {
         printf 'Pf\n4 2\n-1.0\n'

@@ -4,6 +4,7 @@
 #include <brdfs/fit/instrument/instrument_problem.h>
 #include <brdfs/fit/instrument/instrument_study.h>
 #include <brdfs/fit/instrument/quadratures.h>
+#include <brdfs/fit/material_fit.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
@@ -50,7 +51,7 @@ FitResult searchMaterial(const FitSamples& samples, const FitOptions& options) {
     plain.uncertainty = {};
     plain.contributions.clear();
     plain.progress = {};
-    return fit(samples, plain);
+    return fitMaterial(samples, plain);
 }
 
 Minimum minimised(const InstrumentProblem& problem, const std::vector<double>& start,
@@ -205,10 +206,7 @@ FitResult fitWithInstrument(const FitSamples& samples, const FitOptions& options
         if (options.progress) options.progress(most, most);
         return result;
     }
-    throw NumericError(fmt::format(
-        "the quadratures over apertures did not settle in {} searches: each led to a material "
-        "that needs finer ones",
-        most));
+    throw unsettled(most);
 }
 
 std::vector<double> readingsOf(const FitResult& result, const FitSamples& samples) {

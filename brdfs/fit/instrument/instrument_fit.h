@@ -1,6 +1,7 @@
 #pragma once
 
-#include <brdfs/fit/fit.h>
+#include <brdfs/fit/fit_options.h>
+#include <brdfs/fit/fit_result.h>
 
 #include <span>
 #include <vector>

@@ -2,21 +2,19 @@
 
 #include <brdfs/fit/covariance.h>
 #include <brdfs/fit/dense.h>
+#include <brdfs/fit/fit_statistics.h>
+#include <brdfs/fit/held_by_bounds.h>
 #include <brdfs/fit/instrument/instrument_system.h>
 #include <brdfs/fit/minimum_study.h>
-#include <brdfs/fit/percentiles.h>
 #include <brdfs/fit/propagated_errors.h>
 #include <brdfs/fit/resampling.h>
 #include <brdfs/fit/scan_spread.h>
 #include <brdfs/fit/unseen_lobes.h>
-#include <hshfit/error.h>
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 #include <Eigen/Dense>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -55,9 +53,9 @@ Leverages leveragesOf(const WholeSystem& system, const Matrix& inverse) {
 
 /// Names and values of x, then of the free scales; where a bound holds them.
 struct Described {
-    std::vector<FittedParameter> parameters;
-    std::vector<bool> fixed;
-    std::vector<double> slope;
+    std::vector<FittedParameter> parameters = {};
+    std::vector<bool> fixed = {};
+    std::vector<double> slope = {};
     double projectedGradient = 0;
 };
 
@@ -149,20 +147,12 @@ FittedParameter named(const InstrumentProblem& problem, std::size_t i, double va
 
 Described describedAt(const InstrumentProblem& problem, const std::vector<double>& x,
                       const Equations& reduced, const WholeSystem& system) {
-    Described result;
-    const Bounds bounds = problem.bounds();
+    const HeldByBounds held = heldByBounds(x, reduced, problem.bounds());
+    Described result{.fixed = held.fixed, .projectedGradient = held.projectedGradient};
     const std::vector<std::string> names = problem.readings().samples.channels.names();
     for (std::size_t i = 0; i < x.size(); ++i) {
         FittedParameter parameter = named(problem, i, x[i], names);
-        const double reach = 1e-9 * (1 + std::abs(x[i])), pull = reduced.gradient[i];
-        if (x[i] <= bounds.lower[i] + reach && pull >= 0) parameter.bound = "lower";
-        if (x[i] >= bounds.upper[i] - reach && pull <= 0) parameter.bound = "upper";
-        // As in fits without an instrument: held only by a pull worth the name.
-        const double scale = std::sqrt(std::max(reduced.hessian[i * x.size() + i], 0.0));
-        const double negligible = 1e-6 * std::sqrt(2 * reduced.cost) + 1e-12;
-        result.fixed.push_back(!parameter.bound.empty() && std::abs(pull) > negligible * scale);
-        if (!result.fixed[i] && scale > 0)
-            result.projectedGradient = std::max(result.projectedGradient, std::abs(pull) / scale);
+        parameter.bound = held.bound[i];
         result.slope.push_back(
             i < problem.shapeCount() ? problem.sum().shapes()[i].slope(parameter.value) : 1);
         result.parameters.push_back(std::move(parameter));
@@ -189,55 +179,22 @@ std::vector<std::size_t> placesOf(const InstrumentProblem& problem, std::size_t 
 void addBootstrapOfReadings(const InstrumentProblem& problem, const std::vector<double>& x,
                             const FitOptions& options, Uncertainty& result) {
     const Readings& readings = problem.readings();
-    const std::size_t count = readings.samples.size();
     const auto members = scanMembers(readings.samples);
-    std::vector<std::vector<double>> draws(options.uncertainty.bootstrap);
-    std::atomic<std::size_t> done = 0;
-    const Bounds bounds = problem.bounds();
-    tbb::parallel_for(std::size_t{0}, draws.size(), [&](std::size_t b) {
-        const std::vector<std::size_t> times = timesDrawn(members, count, options.seed, b);
+    const auto refit = [&](std::size_t b) {
+        const std::vector<std::size_t> times =
+            timesDrawn(members, readings.samples.size(), options.seed, b);
         const InstrumentProblem again(readings, problem.sum(), options.loss,
                                       {times.begin(), times.end()});
-        const Minimum found =
-            minimise([&](std::span<const double> at,
-                         bool derivatives) { return again.equations(at, derivatives); },
-                     x, bounds.lower, bounds.upper);
-        if (found.converged) draws[b] = found.x;
-        if (options.uncertainty.progress) options.uncertainty.progress(++done, draws.size());
-    });
-    result.bootstrapDraws = draws.size();
-    result.bootstrapFailures =
-        static_cast<std::size_t>(std::ranges::count_if(draws, &std::vector<double>::empty));
-    if (draws.size() - result.bootstrapFailures < 2)
-        throw NumericError(
-            fmt::format("{} of {} fits to resampled data converged; expected at least 2",
-                        draws.size() - result.bootstrapFailures, draws.size()));
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        std::vector<double> values;
-        for (const std::vector<double>& draw : draws)
-            if (!draw.empty())
-                values.push_back(i < problem.shapeCount()
-                                     ? problem.sum().shapes()[i].toValue(draw[i])
-                                     : draw[i]);
-        result.parameters[i].bootstrap = summarised(std::move(values));
-    }
-    for (std::vector<double>& draw : draws)
-        for (std::size_t i = 0; !draw.empty() && i < problem.shapeCount(); ++i)
-            draw[i] = problem.sum().shapes()[i].toValue(draw[i]);
-    result.draws = std::move(draws);
-}
-
-std::vector<std::vector<std::string>> namesOf(const std::vector<std::vector<std::size_t>>& sets,
-                                              const std::vector<FittedParameter>& parameters) {
-    std::vector<std::vector<std::string>> result;
-    for (const auto& set : sets) {
-        result.emplace_back();
-        for (const std::size_t i : set)
-            result.back().push_back(parameters[i].channel.empty()
-                                        ? parameters[i].name
-                                        : parameters[i].name + " " + parameters[i].channel);
-    }
-    return result;
+        const Bounds bounds = problem.bounds();
+        Minimum found = minimise([&](std::span<const double> at,
+                                     bool derivatives) { return again.equations(at, derivatives); },
+                                 x, bounds.lower, bounds.upper);
+        if (!found.converged) return std::vector<double>();
+        for (std::size_t j = 0; j < problem.shapeCount(); ++j)
+            found.x[j] = problem.sum().shapes()[j].toValue(found.x[j]);
+        return std::move(found.x);
+    };
+    addBootstrap(refit, options.uncertainty, result);
 }
 
 /// The values of one channel's sum, from those of all parameters.
@@ -253,7 +210,6 @@ FittedPoint pointOf(const InstrumentProblem& problem, const Covariance& covarian
                     const Described& described) {
     FittedPoint point;
     point.isotropic = problem.readings().samples.isotropic;
-    const std::size_t n = described.slope.size();
     std::vector<double> values;
     for (const FittedParameter& own : described.parameters) values.push_back(own.value);
     for (std::size_t c = 0; c < problem.channels(); ++c) {
@@ -261,9 +217,7 @@ FittedPoint pointOf(const InstrumentProblem& problem, const Covariance& covarian
         for (const std::size_t i : placesOf(problem, c)) channel.slopes.push_back({{i, 1}});
         point.channels.push_back(std::move(channel));
     }
-    point.covariance = covariance.whole;
-    for (std::size_t i = 0; i < n * n; ++i)
-        point.covariance[i] *= described.slope[i / n] * described.slope[i % n];
+    point.covariance = covarianceOfValues(covariance, described.slope);
     return point;
 }
 
@@ -271,9 +225,8 @@ FittedPoint pointOf(const InstrumentProblem& problem, const Covariance& covarian
 std::shared_ptr<const VarianceFreedom> freedomOfValues(const WholeSystem& system,
                                                        const Matrix& inverse,
                                                        const Described& described) {
-    constexpr std::size_t mostValues = 20'000;
     const std::size_t values = system.rows().material.size();
-    if (values > mostValues) return {};
+    if (values > mostFreedomValues) return {};
     Matrix rows = Matrix::Zero(at(values + system.priors().size()), system.size());
     system.forEachValue([&](std::size_t v, const Indices& places, const Vector& slopes, double) {
         rows(at(v), places) = slopes;
@@ -379,7 +332,7 @@ void describeReadings(const InstrumentProblem& problem, const std::vector<double
     const FitSamples& samples = problem.readings().samples;
     const Equations equations = problem.equations(x, true);
     const WholeSystem system(problem, x);
-    Described described = describedAt(problem, x, equations, system);
+    const Described described = describedAt(problem, x, equations, system);
     const std::vector<bool>& fixed = described.fixed;
     const double unit = problem.normalisation();
     Equations whole = equationsOf(system.hessian() / unit, {});
@@ -416,14 +369,9 @@ void describeReadings(const InstrumentProblem& problem, const std::vector<double
         {shapes, channels, shapes + problem.sum().linears().size() * channels},
         [&](std::span<const double> other) { return problem.equations(other, true); }, x, equations,
         fixed, covariance);
-    for (std::size_t i = 0; i < fixed.size(); ++i)
-        if (covariance.variance[i] >= 0)
-            described.parameters[i].standardError =
-                std::sqrt(covariance.variance[i]) * described.slope[i];
-    result.ambiguous = namesOf(covariance.ambiguous, described.parameters);
-    result.correlations = covariance.correlations;
     result.projectedGradient = described.projectedGradient;
     result.parameters = described.parameters;
+    stateErrors(covariance, described.slope, result);
     result.point = pointOf(problem, covariance, described);
     if (freedom) result.point.freedom.push_back({0, freedom});
     if (!options.contributions.empty())

@@ -2,7 +2,8 @@
 
 #include <brdfs/fit/instrument/instrument_problem.h>
 
-#include <brdfs/fit/fit.h>
+#include <brdfs/fit/fit_options.h>
+#include <brdfs/fit/fit_result.h>
 
 #include <vector>
 

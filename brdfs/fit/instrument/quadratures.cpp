@@ -1,6 +1,6 @@
 #include <brdfs/fit/instrument/quadratures.h>
 
-#include <brdfs/fit/fit.h>
+#include <brdfs/fit/fit_result.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
@@ -17,6 +17,13 @@ double statedAt(const FitSamples& samples, std::size_t k, const Instrument& inst
 }
 
 }  // namespace
+
+NumericError unsettled(int searches) {
+    return NumericError(fmt::format(
+        "the quadratures over apertures did not settle in {} searches: each led to a material "
+        "that needs finer ones",
+        searches));
+}
 
 bool Quadratures::refine(const Brdf& material, const FitSamples& samples,
                          const Instrument& instrument) {

@@ -3,6 +3,7 @@
 #include <brdfs/fit/instrument/fitted_instrument.h>
 #include <brdfs/fit/instrument/patch_sums.h>
 #include <brdfs/fit/instrument/veil.h>
+#include <hshfit/error.h>
 
 #include <optional>
 #include <vector>
@@ -21,6 +22,9 @@ struct Quadratures {
     /// States those over `averaged` samples.
     void describe(const FitSamples& averaged, FittedInstrument& result) const;
 };
+
+/// The error of a fit whose material needed finer quadratures after each of `searches`.
+NumericError unsettled(int searches);
 
 /// Samples without the offset and the dark signal that are stated.
 FitSamples withoutStated(const FitSamples& samples, const Instrument& instrument);

@@ -1,3 +1,4 @@
+#include <brdfs/measured/cell_measure.h>
 #include <brdfs/measured/gridded/angle_block.h>
 #include <brdfs/measured/gridded/half_difference_block.h>
 #include <brdfs/measured/gridded/slice.h>
@@ -179,6 +180,26 @@ void SliceBrdf::coverage(const Direction& wo, DirectionBatch wi, unsigned char* 
             covered[begin + k] = rests;
         }
     }
+}
+
+void SliceBrdf::giveCells(CellReceiver& receiver) const {
+    const auto half = [&](double h) { return layout_.thetaHalf(h); };
+    const double step = layout_.thetaDifference(1) - layout_.thetaDifference(0);
+    const auto give = [&](const DirectionPair& pair, double measure) {
+        if (std::min(pair.wi.z, pair.wo.z) <= 1e-12) return receiver.belowHorizon();
+        unsigned char covered = 0;
+        coverage(pair.wo, {&pair.wi.x, &pair.wi.y, &pair.wi.z, 1}, &covered);
+        if (!covered) return receiver.invalid();
+        receiver.add(pair, evaluate(*this, pair.wi, pair.wo), measure);
+    };
+    for (const double phi : layout_.phi)
+        for (std::size_t d = 0; d < layout_.differenceCount; ++d)
+            for (std::size_t h = 0; h < layout_.halfCount; ++h) {
+                const double th = static_cast<double>(h);
+                const double thetaD = layout_.thetaDifference(static_cast<double>(d));
+                give(fromHalfDifference(half(th), 0, thetaD, radians(phi)),
+                     cellMeasure(half, th, thetaD, step));
+            }
 }
 
 std::vector<Lobe> SliceBrdf::lobes(const Direction& wo) const {

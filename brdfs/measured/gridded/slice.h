@@ -1,6 +1,7 @@
 #pragma once
 
 #include <brdfs/measured/measured_brdf.h>
+#include <brdfs/measured/own_samples.h>
 #include <brdfs/rows/format.h>
 
 #include <memory>
@@ -34,7 +35,7 @@ struct SliceLayout {
 /// Interpolation leaves them out, and f is 0 without a valid node. checkIntact() throws
 /// InputError naming the first NaN. Directions with valid nodes around them are covered; a
 /// single slice covers only pairs within half a degree of its difference azimuth.
-class SliceBrdf : public MeasuredBrdf {
+class SliceBrdf : public MeasuredBrdf, public HasCells {
 public:
     /// `stored`: [phi][theta_d][theta_h][channel]. `kind`: the format's name, for info.
     SliceBrdf(SliceLayout layout, Channels channels, std::vector<float> stored, std::string name,
@@ -56,6 +57,10 @@ public:
     std::vector<Axis> axes() const override;
     void checkIntact() const override;
     void checkReadable() const override {}
+    void giveCells(CellReceiver& receiver) const override;
+    /// No: cells of a few slices are no sample of all pairs, while f holds for all of them.
+    bool cellsAreDefault() const override { return false; }
+    bool holdsBeyondCoverage() const override { return true; }
 
     const SliceLayout& layout() const { return layout_; }
 

@@ -258,7 +258,7 @@ std::optional<BothOrders> Scattered::bothOrders() const {
     return both;
 }
 
-std::unique_ptr<Scattered> Scattered::scaled(double factor, std::string name) const {
+std::unique_ptr<Brdf> Scattered::scaled(double factor, std::string name) const {
     ScatteredOptions options = options_;
     options.scale = factor;  // the samples have the one of the file
     return std::make_unique<Scattered>(samples_, options, std::move(name));
@@ -278,8 +278,8 @@ DirectionSamples MeasuredPairs::directionSamples() const {
 }
 
 std::optional<MeasuredPairs> measuredPairs(const Brdf& brdf) {
-    if (const auto* scattered = dynamic_cast<const Scattered*>(&brdf))
-        return MeasuredPairs{scattered->samples(), scattered->laws(), scattered->name()};
+    if (const auto* measured = dynamic_cast<const HasMeasuredPairs*>(&brdf))
+        return MeasuredPairs{measured->samples(), brdf.laws(), brdf.name()};
     const auto* view = dynamic_cast<const ChannelView*>(&brdf);
     if (!view) return std::nullopt;
     auto pairs = measuredPairs(view->seen());

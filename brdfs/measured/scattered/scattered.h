@@ -1,6 +1,7 @@
 #pragma once
 
 #include <brdfs/measured/measured_brdf.h>
+#include <brdfs/measured/own_samples.h>
 #include <brdfs/measured/scattered/interpolant.h>
 #include <brdfs/measured/scattered/sample_lobes.h>
 #include <brdfs/measured/scattered/samples.h>
@@ -42,7 +43,7 @@ double scaleOf(const Parameters& parameters);
 /// With `exchange`, f is reciprocal exactly, unless samples contradict it: where both orders of a
 /// pair were measured and differ by more than 1e-3, f has the measured value in each order, and
 /// Laws::reciprocal is false.
-class Scattered : public MeasuredBrdf {
+class Scattered : public MeasuredBrdf, public HasMeasuredPairs {
 public:
     /// Throws InputError, starting with `name`, if there are no samples above the horizon.
     Scattered(Samples samples, const ScatteredOptions& options, std::string name);
@@ -62,9 +63,8 @@ public:
     /// show them (sample_lobes.h).
     std::vector<Lobe> lobes(const Direction& wo) const override;
 
-    const Samples& samples() const { return samples_; }
-    /// The same samples times a factor of at least 0, under another name.
-    std::unique_ptr<Scattered> scaled(double factor, std::string name) const;
+    const Samples& samples() const override { return samples_; }
+    std::unique_ptr<Brdf> scaled(double factor, std::string name) const override;
 
 private:
     Samples samples_;
@@ -87,7 +87,8 @@ struct MeasuredPairs {
     /// reduced to fewer coordinates than a pair of directions has.
     DirectionSamples directionSamples() const;
 };
-/// Those of scattered samples, also as seen through a ChannelView; none for any other BRDF.
+/// The pairs of a BRDF that HasMeasuredPairs, also as seen through a ChannelView; none for any
+/// other BRDF.
 std::optional<MeasuredPairs> measuredPairs(const Brdf& brdf);
 
 }  // namespace hshfit::brdfs

@@ -36,6 +36,21 @@ void azimuthRow(Real c, Real s, int order, bool condonShortley, std::size_t stri
     }
 }
 
+/// The memory of a thread for a block. It is kept, so that later calls allocate nothing.
+template <class Real>
+struct ThetaBlock {
+    std::vector<Elevation<Real>> points;
+    std::vector<Real> azimuths, parts;
+
+    static ThetaBlock& ofThread(int order, std::size_t count) {
+        static thread_local ThetaBlock block;
+        block.points.resize(count);
+        block.azimuths.resize(static_cast<std::size_t>(2 * order - 1) * count);
+        block.parts.resize(static_cast<std::size_t>(order) * count);
+        return block;
+    }
+};
+
 /// Block by block: theta parts of all points for one m, times their azimuth parts.
 template <class Real>
 void tabulateByTheta(const Basis& basis, DirectionBatch directions, Basis::Layout layout,
@@ -44,9 +59,8 @@ void tabulateByTheta(const Basis& basis, DirectionBatch directions, Basis::Layou
     const bool bySlot = layout == Basis::Layout::bySlot;
     const std::size_t slotStep = bySlot ? directions.count : 1;
     const std::size_t step = bySlot ? 1 : static_cast<std::size_t>(basis.slots());
-    std::vector<Elevation<Real>> points(std::min(blockSize, directions.count));
-    std::vector<Real> azimuths(static_cast<std::size_t>(2 * order - 1) * points.size());
-    std::vector<Real> parts(static_cast<std::size_t>(order) * points.size());
+    auto& [points, azimuths, parts] =
+        ThetaBlock<Real>::ofThread(order, std::min(blockSize, directions.count));
     for (std::size_t first = 0; first < directions.count; first += blockSize) {
         const std::size_t n = std::min(blockSize, directions.count - first);
         for (std::size_t k = 0; k < n; ++k) {

@@ -4,13 +4,39 @@
 #include <hshfit/representation/basis_matrix.h>
 #include <hshfit/representation/forms/pair_evaluators.h>
 #include <hshfit/representation/forms/represented_brdf.h>
+#include <hshfit/representation/halfway/halfway_terms.h>
+#include <hshfit/representation/one_pair.h>
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstdlib>
+#include <new>
 #include <random>
+
+namespace {
+
+/// Calls of operator new in this program.
+std::atomic<std::size_t> allocations = 0;
+
+}  // namespace
+
+// Inlined, malloc and free would look mismatched to the compiler.
+[[gnu::noinline]] void* operator new(std::size_t size) {
+    ++allocations;
+    void* memory = std::malloc(size == 0 ? 1 : size);
+    if (!memory) throw std::bad_alloc();
+    return memory;
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
+    std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
+    std::free(memory);
+}
 
 namespace hshfit {
 namespace {
@@ -147,13 +173,53 @@ TEST(PairEvaluator, GivesAPairTheSameBitsInAnyBatch) {
         fast->evaluate(pairs.side(0), pairs.side(1), whole.data());
         for (std::size_t k : {std::size_t{0}, std::size_t{37}, count - 1}) {
             float one[3];
-            const auto single = [&](int s) {
-                return DirectionBatch{&pairs.x[s][k], &pairs.y[s][k], &pairs.z[s][k], 1};
-            };
-            fast->evaluate(single(0), single(1), one);
+            evaluate(*fast, pairs.at(0, k), pairs.at(1, k), one);
             for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(one[c], whole[c * count + k]);
         }
     }
+}
+
+/// An isotropic halfway form of small random numbers.
+Representation randomHalfway() {
+    Representation r;
+    r.halfway = {4, 3, 2};
+    r.head.isotropic = r.head.bilateral = r.head.reciprocal = true;
+    r.head.channels = Channels::rgb();
+    r.head.source = "test";
+    const HalfwayTerms terms(r.halfway, {true, true, true});
+    StoredArray array{.shape = {3, terms.size()}, .values = {}};
+    std::mt19937 engine(3);
+    std::uniform_real_distribution<double> small(-0.05, 0.05);
+    for (std::size_t i = 0; i < 3 * terms.size(); ++i) array.values.push_back(small(engine));
+    r.content = HalfwayArray{array, {0.25, 0.25, 0}, std::vector<HalfwayCeiling>(3, {1, 1, 100})};
+    return r;
+}
+
+/// The second pair of a form may lie anywhere: memory depends on the form alone.
+TEST(PairEvaluator, AllocatesNothingForOnePairAfterTheFirst) {
+    const Pairs pairs = makePairs(60);
+    std::vector<Representation> forms = everyForm();
+    forms.push_back(randomRows("hsh", 24, OutgoingSet::elevations(9), Quantity::brdf));
+    forms.push_back(randomRows("lsosh", 5, OutgoingSet::elevations(9), Quantity::brdf));
+    forms.push_back(randomMatrix("lsosh", 4, {true, true, true}));
+    forms.push_back(randomHalfway());
+    for (const Representation& form : forms) {
+        const auto fast = pairEvaluator(form, openNothing);
+        float one[3];
+        evaluate(*fast, {0, 0, 1}, {0, 0, 1}, one);
+        const std::size_t before = allocations;
+        for (std::size_t k = 0; k < pairs.x[0].size(); ++k)
+            evaluate(*fast, pairs.at(0, k), pairs.at(1, k), one);
+        EXPECT_EQ(allocations - before, 0U)
+            << kindName(form.kind()) << ' ' << form.head.basis << ' ' << form.head.order;
+    }
+    // The counter sees what a reconstruction in double precision allocates.
+    const auto exact = reconstruct(forms.front(), openNothing);
+    std::vector<double> f(3);
+    const std::size_t before = allocations;
+    const Direction up{0, 0, 1};
+    exact->eval(up, {&up.x, &up.y, &up.z, 1}, f.data());
+    EXPECT_GT(allocations - before, 0U);
 }
 
 TEST(PairEvaluator, TakesAnEmptyBatch) {

@@ -2,6 +2,7 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
+#include <hshfit/projection/one_basis.h>
 #include <hshfit/representation/basis_matrix.h>
 #include <hshfit/representation/change.h>
 #include <hshfit/representation/constraints/constraints.h>
@@ -32,9 +33,8 @@ public:
 
     Coefficients outgoing(const Form& form) override {
         const auto basis = basisOf(form);
-        const Basis* const one[] = {basis.get()};
         const OutgoingSet set = outgoingOf(form, brdf_.laws());
-        return std::move(project(brdf_, one, set, optionsFor(form))[0].coefficients);
+        return project(brdf_, *basis, set, optionsFor(form)).coefficients;
     }
     Representation both(const Form& form) override {
         return projectBoth(brdf_, *basisOf(form), form.reciprocal, optionsFor(form));

@@ -26,8 +26,9 @@ std::unique_ptr<Basis> basisOf(const CoefficientHead& head) {
 struct PairBlock {
     std::vector<double> ix, iy, iz, ox, oy, oz;
 
-    explicit PairBlock(std::size_t size)
-        : ix(size), iy(size), iz(size), ox(size), oy(size), oz(size) {}
+    void resize(std::size_t size) {
+        for (auto* values : {&ix, &iy, &iz, &ox, &oy, &oz}) values->resize(size);
+    }
 
     void fill(DirectionBatch wi, DirectionBatch wo, std::size_t first, std::size_t count,
               bool turn) {
@@ -58,6 +59,23 @@ struct PairBlock {
     }
 };
 
+/// The memory of a thread for its calls. It grows to what its largest form needs, so that later
+/// calls allocate nothing.
+struct Scratch {
+    PairBlock pairs;
+    std::vector<float> workspace, values;
+
+    static Scratch& ofThread() {
+        static thread_local Scratch scratch;
+        return scratch;
+    }
+    void resize(std::size_t block, std::size_t workspaceSize, std::size_t valueCount) {
+        pairs.resize(block);
+        if (workspace.size() < workspaceSize) workspace.resize(workspaceSize);
+        if (values.size() < valueCount) values.resize(valueCount);
+    }
+};
+
 /// Pairs per block: basis values of both directions stay in the first-level cache.
 std::size_t blockFor(std::size_t slots, std::size_t pairs) {
     const std::size_t fitting = std::clamp<std::size_t>(4096 / slots, pairPadding, 256);
@@ -73,12 +91,14 @@ public:
 
     void evaluate(DirectionBatch wi, DirectionBatch wo, float* out) const final {
         const std::size_t block = blockFor(basis_->slots(), wi.count);
-        PairBlock pairs(block);
-        std::vector<float> workspace(workspaceSize(block)), values(channels_ * block);
+        Scratch& scratch = Scratch::ofThread();
+        scratch.resize(block, workspaceSize(block), channels_ * block);
+        PairBlock& pairs = scratch.pairs;
+        float* const values = scratch.values.data();
         for (std::size_t first = 0; first < wi.count; first += block) {
             const std::size_t count = std::min(block, wi.count - first);
             pairs.fill(wi, wo, first, count, turns());
-            sum(pairs, count, block, workspace.data(), values.data());
+            sum(pairs, count, block, scratch.workspace.data(), values);
             for (std::size_t k = 0; k < count; ++k) {
                 const bool above = pairs.iz[k] > 0 && pairs.oz[k] > 0;
                 const float factor =
@@ -161,12 +181,22 @@ private:
         return 2 * block * basis().slots();
     }
     bool turns() const override { return isotropic_; }
-    void sum(const PairBlock& pairs, std::size_t, std::size_t block, float* workspace,
+    void sum(const PairBlock& pairs, std::size_t count, std::size_t block, float* workspace,
              float* values) const override {
         float* atWo = workspace + block * basis().slots();
-        basis().evaluateColumns(pairs.incoming(block), workspace);
-        basis().evaluateColumns(pairs.outgoing(block), atWo);
+        tabulate(pairs.incoming(count == 1 ? 1 : block), block, workspace);
+        tabulate(pairs.outgoing(count == 1 ? 1 : block), block, atWo);
         sumBilinear(form_, workspace, atWo, block, values);
+    }
+
+    /// Basis values [slot][block]. One direction goes through the rows of the basis, which take
+    /// no memory, and fills the block.
+    void tabulate(DirectionBatch directions, std::size_t block, float* out) const {
+        if (directions.count > 1) return basis().evaluateColumns(directions, out);
+        basis().evaluate(directions, out);
+        // From the end on: what is read lies below what has been written.
+        for (std::size_t slot = basis().slots(); slot-- > 0;)
+            std::fill_n(out + slot * block, block, out[slot]);
     }
 
     bool isotropic_;

@@ -4,6 +4,7 @@
 #include <hshfit/brdf/kink_curve.h>
 #include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/error.h>
+#include <hshfit/projection/one_basis.h>
 #include <hshfit/representation/basis_matrix.h>
 #include <hshfit/representation/halfway/halfway.h>
 
@@ -200,11 +201,10 @@ Coefficients expand(const Representation& representation, const BrdfOpener& open
                            : bases::make(representation.head.basis, representation.head.order,
                                          {.condonShortley = representation.head.condonShortley});
     const auto brdf = reconstruct(representation, open);
-    const Basis* const one[] = {basis.get()};
     ProjectionOptions projection = options.projection;
     if (!halfway) projection.quantity = representation.head.quantity;
     const OutgoingSet set = options.outgoing ? *options.outgoing : defaultSet(representation);
-    return std::move(project(*brdf, one, set, projection)[0].coefficients);
+    return project(*brdf, *basis, set, projection).coefficients;
 }
 
 }  // namespace hshfit::inline representation::inline forms
