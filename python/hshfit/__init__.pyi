@@ -771,6 +771,7 @@ def stress(
     max_order: int = ...,
     trials: Optional[int] = ...,
     seed: int = ...,
+    tolerance: float = ...,
     of: Names = ...,
     progress: Progress = ...,
 ) -> Row: ...
