@@ -130,11 +130,13 @@ FitProblem::FitProblem(const FitSamples& samples, const ParametricSum& sum, Loss
     : samples_(samples), sum_(sum), loss_(loss) {
     const bool linear = loss == Loss::Kind::l2 || loss == Loss::Kind::cosine;
     projectionWeights_.resize(linear && samples.sigmas.empty() ? 1 : channels());
+    mapped_.reserve(channels() * samples.size());
     double squares = 0, weights = 0;
     for (std::size_t c = 0; c < channels(); ++c)
         for (std::size_t k = 0; k < samples.size(); ++k) {
             const Mapped g = mapValue(loss, samples.value(c, k), samples.wiZ[k]);
             const double weight = samples.weight(c, k);
+            mapped_.push_back(g.value);
             squares += weight * g.value * g.value;
             weights += weight;
             if (c < projectionWeights_.size())
@@ -278,7 +280,7 @@ Equations FitProblem::joint(std::span<const double> x, bool derivatives,
             const std::size_t at = block.begin + static_cast<std::size_t>(k);
             const double cosine = samples_.wiZ[at], weight = samples_.weight(c, at);
             const Mapped mapped = mapValue(loss_, f(k), cosine);
-            const double r = mapped.value - mapValue(loss_, samples_.value(c, at), cosine).value;
+            const double r = mapped.value - mapped_[c * samples_.size() + at];
             const Kernel kernel = applyKernel(robust_, scale_, r * r);
             sums.cost += 0.5 * weight * kernel.value;
             root(k) = std::sqrt(weight * kernel.slope);
@@ -361,8 +363,7 @@ WeightedRows FitProblem::rowsAt(std::span<const double> x) const {
                 const double cosine = samples_.wiZ[at], root = std::sqrt(samples_.weight(c, at));
                 const Mapped mapped = mapValue(loss_, f, cosine);
                 result.values[place] = f;
-                result.residuals[place] =
-                    root * (mapValue(loss_, samples_.value(c, at), cosine).value - mapped.value);
+                result.residuals[place] = root * (mapped_[place] - mapped.value);
                 for (std::size_t i = 0; i < result.columns; ++i)
                     result.slopes[place * result.columns + i] =
                         root * mapped.slope * rows(row, static_cast<Eigen::Index>(i));
@@ -399,8 +400,7 @@ std::vector<double> FitProblem::residuals(std::span<const double> x) const {
     for (std::size_t c = 0; c < channels(); ++c)
         for (std::size_t k = 0; k < samples_.size(); ++k) {
             double& r = result[c * samples_.size() + k];
-            r = mapValue(loss_, r, samples_.wiZ[k]).value -
-                mapValue(loss_, samples_.value(c, k), samples_.wiZ[k]).value;
+            r = mapValue(loss_, r, samples_.wiZ[k]).value - mapped_[c * samples_.size() + k];
         }
     return result;
 }

@@ -107,6 +107,7 @@ private:
     double scale_ = 1;
     double normalisation_ = 1;
     std::shared_ptr<const Whitening> whitening_;
+    std::vector<double> mapped_;  ///< data by the loss, in the order of samples().values
     std::vector<std::vector<double>> projectionWeights_;  ///< roots; of all channels or of each
 };
 

@@ -34,9 +34,11 @@ stability::StressReport stress(const std::string& output, const StressOptions& o
     const std::size_t trials =
         options.trials.value_or(options.lobes.empty() ? brdfs::RandomCasesOptions{}.count : 0);
     if (trials > 0) {
+        report.triedTolerance = options.tolerance;
         report.statedErrors = stability::summarise(stability::tryErrors(
             brdfs::randomCases({.count = trials, .seed = options.seed, .only = options.of}),
-            {.progress = listener.part("trials of stated errors")}));
+            {.tolerance = options.tolerance,
+             .progress = listener.part("trials of stated errors")}));
     }
     if (!output.empty()) stability::writeStress(report, output);
     return report;

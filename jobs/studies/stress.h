@@ -24,6 +24,7 @@ struct StressOptions {
     /// lobes are given.
     std::optional<std::size_t> trials = {};
     std::uint64_t seed = brdfs::RandomCasesOptions{}.seed;  ///< of the random projections
+    double tolerance = 0;              ///< of the random projections; 0: each BRDF's own
     std::vector<std::string> of = {};  ///< models and formats whose projections are kept; all
 };
 OptionRows<StressOptions> stressOptions();

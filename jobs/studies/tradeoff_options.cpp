@@ -98,6 +98,7 @@ constexpr OptionRow stressRows[] = {
               "Random projections over the catalog whose stated errors are tried (default: 2000, "
               "or none if lobes are given)"},
     OptionRow{"seed", at<&StressOptions::seed>, "Of the random projections"},
+    toleranceRow(at<&StressOptions::tolerance>),
     OptionRow{"of", at<&StressOptions::of>,
               "Models and formats whose random projections are tried, each as it is among all "
               "(default: all)"}

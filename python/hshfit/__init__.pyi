@@ -772,6 +772,7 @@ def stress(
     max_order: int = ...,
     trials: Optional[int] = ...,
     seed: int = ...,
+    tolerance: float = ...,
     of: Names = ...,
     progress: Progress = ...,
 ) -> Row: ...

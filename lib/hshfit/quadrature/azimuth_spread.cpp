@@ -99,7 +99,7 @@ bool AzimuthPeaks::addAnisotropic(const Lobe& lobe, const Direction& wo, double 
     for (int k = 0; k < steps && !found; ++k) {
         const Complex change = value(z) / slope(z);
         z -= change;
-        found = std::abs(change) <= close * std::abs(z);
+        found = std::norm(change) <= close * close * std::norm(z);
     }
     if (!found || !(std::abs(z) > 0)) return false;
     addRoot(z.real(), z.imag());

@@ -46,7 +46,7 @@ struct GridOptions {
     int order = 7;  ///< bands that have to be resolved exactly
     /// Refinement: every level has 1.4 times as many nodes, in both directions. Isotropic lobes are
     /// right to about 1e-3 at level 0 and to 1e-6 at level 2, long and narrow ones two levels
-    /// later.
+    /// later. Levels below 0 are for tolerances that level 0 exceeds.
     int level = 0;
     /// Whether azimuths may be clustered; if not, all panels have equispaced ones.
     bool squeezed = false;

@@ -17,14 +17,13 @@ namespace {
 /// Errors below this, relative, are those of basis functions and of models' values.
 constexpr double rounding = 1e-12;
 
-Projection projectTrial(const ErrorTrial& trial, double share, std::size_t maxEvaluations) {
+Projection projectTrial(const ErrorTrial& trial, double tolerance, std::size_t maxEvaluations) {
     const auto basis = bases::make(trial.basis, trial.order);
     const Basis* const one[] = {basis.get()};
-    return project(*trial.brdf, one,
-                   OutgoingSet::direction(radians(trial.thetaDegrees), radians(trial.phiDegrees)),
-                   {.quantity = trial.quantity,
-                    .tolerance = share * trial.brdf->defaultTolerance(),
-                    .maxEvaluations = maxEvaluations})[0];
+    return project(
+        *trial.brdf, one,
+        OutgoingSet::direction(radians(trial.thetaDegrees), radians(trial.phiDegrees)),
+        {.quantity = trial.quantity, .tolerance = tolerance, .maxEvaluations = maxEvaluations})[0];
 }
 
 double relativeDistance(const std::vector<double>& a, const std::vector<double>& exact) {
@@ -38,10 +37,13 @@ double relativeDistance(const std::vector<double>& a, const std::vector<double>&
 }
 
 ErrorTrialResult tryError(const ErrorTrial& trial, const ErrorTrialOptions& options) {
-    ErrorTrialResult result{.trial = trial};
+    const double usual = trial.brdf->defaultTolerance();
+    ErrorTrialResult result{.trial = trial,
+                            .tolerance = options.tolerance > 0 ? options.tolerance : usual};
+    const double least = std::min(result.tolerance, usual);
     Projection found, exact;
     try {
-        found = projectTrial(trial, 1, ProjectionOptions{}.maxEvaluations);
+        found = projectTrial(trial, result.tolerance, ProjectionOptions{}.maxEvaluations);
     } catch (const NumericError&) {
         result.state = ErrorTrialResult::State::refused;
         return result;
@@ -49,8 +51,8 @@ ErrorTrialResult tryError(const ErrorTrial& trial, const ErrorTrialOptions& opti
     result.state = ErrorTrialResult::State::noReference;
     for (const double share : {1e-2, 1e-1}) {
         try {
-            exact = projectTrial(trial, share, options.referenceEvaluations);
-            result.share = share;
+            exact = projectTrial(trial, share * least, options.referenceEvaluations);
+            result.referenceTolerance = share * least;
             result.state = ErrorTrialResult::State::measured;
             break;
         } catch (const NumericError&) {
@@ -58,13 +60,13 @@ ErrorTrialResult tryError(const ErrorTrial& trial, const ErrorTrialOptions& opti
     }
     // The same nodes would show no error.
     constexpr double finer = 1e-2, finest = 1e-11;
-    for (double share = result.share * finer;
-         result.state == ErrorTrialResult::State::measured && share > finest &&
+    for (double tolerance = result.referenceTolerance * finer;
+         result.state == ErrorTrialResult::State::measured && tolerance > finest * usual &&
          exact.evaluations == found.evaluations;
-         share *= finer) {
+         tolerance *= finer) {
         try {
-            exact = projectTrial(trial, share, options.referenceEvaluations);
-            result.share = share;
+            exact = projectTrial(trial, tolerance, options.referenceEvaluations);
+            result.referenceTolerance = tolerance;
         } catch (const NumericError&) {
             break;
         }

@@ -28,8 +28,8 @@ struct ErrorTrial {
     std::string spec() const { return file.empty() ? brdf->name() : file; }
 };
 
-/// True errors of a projection at its default tolerance, against the same projection at a
-/// hundredth of it, or finer until the nodes differ, relative to the errors that it states.
+/// True errors of a projection at its default tolerance or another one, against the same projection
+/// at a hundredth of the smaller of the two, or finer until the nodes differ.
 struct ErrorTrialResult {
     enum class State {
         measured,
@@ -42,7 +42,8 @@ struct ErrorTrialResult {
     double coefficients = 0;  ///< true error of the coefficients in L2, relative
     bool hasEnergy = false;
     double statedEnergy = 0, energy = 0;  ///< both relative to the energy
-    double share = 0;  ///< of the default tolerance at which the reference was computed
+    double tolerance = 0;                 ///< asked for
+    double referenceTolerance = 0;        ///< at which the reference was computed
     std::size_t evaluations = 0, referenceEvaluations = 0;
 
     /// Neither error is above the one stated, but for rounding.
@@ -55,6 +56,7 @@ struct ErrorTrialResult {
 };
 
 struct ErrorTrialOptions {
+    double tolerance = 0;  ///< of the projections that are tried; 0: each BRDF's default
     /// For a reference; beyond, one at a tenth of the tolerance is tried.
     std::size_t referenceEvaluations = std::size_t{1} << 20;
     std::function<void(std::size_t, std::size_t)> progress = {};

@@ -39,6 +39,7 @@ struct StressReport {
     std::vector<GramPoint> gram = {};            ///< of least-squares SH
     std::vector<LobeProjection> projection = {};
     std::vector<ErrorTrialSummary> statedErrors = {};  ///< of trials (error_trials.h), if any
+    double triedTolerance = 0;                         ///< of the trials; 0: each BRDF's default
 };
 
 /// The range of the study: the largest degree, and the elevations of outgoing directions.

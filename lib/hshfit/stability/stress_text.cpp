@@ -200,6 +200,7 @@ std::string stressJson(const StressReport& report) {
         }
         projection.push_back(line);
     }
+    const Json tried = report.triedTolerance > 0 ? Json(report.triedTolerance) : Json(nullptr);
     const Json document = {{"format", "hshfit-stress"},
                            {"version", 1},
                            {"max_order", report.maxOrder},
@@ -209,6 +210,7 @@ std::string stressJson(const StressReport& report) {
                            {"basis_change", degreesJson(report.basisChange)},
                            {"lsosh_gram", gram},
                            {"projection", projection},
+                           {"tried_tolerance", tried},
                            {"stated_errors", trialsJson(report.statedErrors)}};
     return jsonText(document, 2) + "\n";
 }
@@ -234,11 +236,15 @@ std::string stressMarkdown(const StressReport& report) {
             degreesTable(report.basisChange);
     if (!report.gram.empty())
         text += "\n## Least-squares spherical harmonics\n\n" + gramTable(report.gram);
-    if (!report.statedErrors.empty())
-        text +=
-            "\n## Stated errors\nRandom projections at the default tolerance, against ones at a "
-            "hundredth of it.\n\n" +
-            trialsTable(report.statedErrors);
+    if (!report.statedErrors.empty()) {
+        const std::string tolerance = report.triedTolerance > 0
+                                          ? fmt::format("a tolerance of {}", report.triedTolerance)
+                                          : std::string("the default tolerance");
+        text += fmt::format(
+            "\n## Stated errors\nRandom projections at {}, against ones at a hundredth of the "
+            "default one or less.\n\n{}",
+            tolerance, trialsTable(report.statedErrors));
+    }
     if (!report.statedErrors.empty() && !report.statedErrors.back().exceptions.empty())
         text += "\nCases in which an error is larger than stated:\n\n" +
                 exceptionsTable(report.statedErrors.back().exceptions);

@@ -50,6 +50,24 @@ TEST(Convergence, ExponentialErrorsAreNotTakenForChanges) {
     EXPECT_GE(estimate(error, 5, false).stated, error(3) - error(4));
 }
 
+/// After one change the error stated is that of the level before, three times over.
+TEST(Convergence, EarlyErrorsCoverExponentialOnesAndAccidents) {
+    EXPECT_TRUE(std::isinf(earlyError({}).expected));
+    for (const double rate : {2.0, 3.0, 4.0, 5.0}) {
+        const auto error = [&](int k) { return std::exp(-rate * std::pow(1.4, k - 1)); };
+        Changes changes;
+        for (int k = 1; k < 3; ++k) {
+            changes.add(std::abs(error(k) - error(k - 1)));
+            const PanelError found = earlyError(changes);
+            EXPECT_GE(found.stated, 2 * error(k)) << rate << " " << k;
+            EXPECT_EQ(found.stated, found.expected);
+        }
+        // The second change alone is a tenth of the error, by accident.
+        changes.values[0] = 0.1 * error(2);
+        EXPECT_GE(1.2 * earlyError(changes).stated, error(2)) << rate;
+    }
+}
+
 /// A last change that is a thousand times too small would hide nearly all of the error.
 TEST(Convergence, AnAccidentOfTheLastChangeIsSeen) {
     for (const double rate : {2.0, 3.0, 4.0, 5.0}) {

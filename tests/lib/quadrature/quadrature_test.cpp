@@ -74,6 +74,29 @@ TEST(HemisphereGrid, CostGrowsWithTheLogarithmOfTheWidthInElevation) {
     EXPECT_GT(rings(1e-3), rings(0.5));
 }
 
+/// Equal azimuths at two levels would show no change, whatever the error.
+TEST(HemisphereGrid, NoTwoLevelsHaveTheSameRingsOrAzimuths) {
+    const Direction wo = directionFromAngles(radians(40), 0.4);
+    const std::vector<std::vector<Lobe>> all = {
+        {}, {{Lobe::About::halfway, 0.3}}, {{Lobe::About::halfway, 0.01}}};
+    for (const auto& lobes : all)
+        for (int order = 4; order <= 40; ++order)
+            for (const auto& [a, b] : {std::pair{0.0, 1.0}, {0.5, 0.75}, {0.875, 0.9375}}) {
+                const AzimuthPeaks peaks(lobes, wo, a, b);
+                std::size_t rings = 0, spread = 0;
+                for (int level = 0; level < 5; ++level) {
+                    HemisphereGrid grid;
+                    appendPanel(grid, a, b, peaks,
+                                {.order = order, .level = level, .squeezed = true});
+                    const AzimuthSpacing& spacing = grid.panels[0].azimuths.spacing;
+                    const std::size_t within = spacing.azimuths << spacing.squeeze;
+                    EXPECT_GT(grid.panels[0].rings, rings) << order << " " << level;
+                    EXPECT_GT(within, spread) << order << " " << level;
+                    rings = grid.panels[0].rings, spread = within;
+                }
+            }
+}
+
 TEST(OutgoingSets, SolidAnglesCoverTheHemisphere) {
     for (const char* text : {"4x4", "32x32", "7x50", "2", "16", "301"}) {
         const OutgoingSet set = OutgoingSet::parse(text);

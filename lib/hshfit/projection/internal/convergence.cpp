@@ -71,4 +71,12 @@ PanelError panelError(const Changes& given, bool mayBeSmooth) {
     return {error, error};
 }
 
+PanelError earlyError(const Changes& changes) {
+    constexpr double ofOneChange = 3;
+    const auto& [last, before, earlier] = changes.values;
+    if (last == infinity) return {infinity, infinity};
+    const double error = before == infinity ? ofOneChange * last : roughError(changes);
+    return {error, error};
+}
+
 }  // namespace hshfit::inline projection

@@ -40,4 +40,9 @@ struct PanelError {
 /// Factors from trials over tables of all formats (docs/results/stability.md).
 PanelError panelError(const Changes& changes, bool mayBeSmooth);
 
+/// The error of a panel that has shown one or two changes and is asked for a loose tolerance: three
+/// times a change that is the only one, and that of algebraic convergence for two. Those of a
+/// smooth f overstate it by far, which leaves room for accidents.
+PanelError earlyError(const Changes& changes);
+
 }  // namespace hshfit::inline projection

@@ -25,18 +25,24 @@ constexpr int maxLevel = 20;
 constexpr double rounding = 1e-14, accuracyOfValues = 1e-12;
 /// Tolerances from here on are those of interpolated tables (Brdf::defaultTolerance).
 constexpr double interpolated = 1e-4;
-/// Levels that a panel has to reach before its changes are believed: a small one, or two, may be an
+/// Changes that a panel has to show before they are believed: a small one, or two, may be an
 /// accident. Interpolated tables state a multiple of their error, which covers such accidents.
-constexpr int leastLevel = 3;
+constexpr int leastChanges = 3;
 /// The share of the totals below which a panel is believed sooner.
 constexpr double negligible = 0.1;
+/// Tolerances from here on are loose: panels begin with a level below 0 and are believed once an
+/// error that leaves room for accidents (earlyError) is small enough, and an error states no less
+/// than a hundredth of the tolerance. To begin with level 0 takes 1.3 times the evaluations of
+/// Ward's model at 1e-3 (bench/projection.cpp, byTolerance).
+constexpr double loose = 1e-4, leastStated = 0.01;
+constexpr int firstOfLoose = -1;
 
 /// State of one elevation panel at its present level.
 struct Panel {
     double a, b;  ///< ends in u
     AzimuthPeaks peaks;
     PanelCurves curves;
-    int level = -1;
+    int level;
     std::vector<double> moments = {}, before = {};  ///< in the order of ThetaProducts
     PerInner energy{};
     std::vector<Changes> change = {};  ///< per basis: of the moments, by norm
@@ -79,7 +85,9 @@ public:
           bases_(tables.theta.bases()),
           wo_(wo),
           options_(options),
-          mayBeSmooth_(brdf.defaultTolerance() < interpolated) {
+          mayBeSmooth_(brdf.defaultTolerance() < interpolated),
+          loose_(mayBeSmooth_ && options.tolerance >= loose),
+          firstLevel_(loose_ ? firstOfLoose : 0) {
         offsets_ = {0};
         for (std::size_t b = 0; b < bases_.size(); ++b)
             offsets_.push_back(offsets_[b] + tables.theta.size(b, brdf.channels().count()));
@@ -90,8 +98,11 @@ public:
         const std::vector<double> breaks = panelBreaks(lobes, wo, heights);
         for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
             const double a = breaks[k], b = breaks[k + 1];
-            panels_.push_back(
-                {.a = a, .b = b, .peaks = {lobes, wo, a, b}, .curves = {curves, a, b}});
+            panels_.push_back({.a = a,
+                               .b = b,
+                               .peaks = {lobes, wo, a, b},
+                               .curves = {curves, a, b},
+                               .level = firstLevel_ - 1});
         }
         result_.horizon = horizonBehaviour(brdf, wo, options.quantity);
     }
@@ -131,6 +142,9 @@ private:
                          .squeezed = true,
                          .even = options_.even},
                         panel.curves);
+            // Rounded up to a multiple of 4, those of level 0 may be as many, and show no change.
+            HemisphereGrid::Panel& last = grid_.panels.back();
+            if (panel.level < 0 && last.cuts.empty()) last.azimuths.spacing.azimuths -= 4;
         }
         const std::size_t cost = grid_.points() / (options_.even ? 2 : 1);
         const bool tooDeep = std::any_of(active.begin(), active.end(), [&](std::size_t p) {
@@ -175,10 +189,10 @@ private:
 
     void update(Panel& panel, const PerInner& energy) const {
         panel.change.resize(bases_.size());
-        for (std::size_t e = 0; e < energy.size() && panel.level > 0; ++e) {
+        for (std::size_t e = 0; e < energy.size() && changesOf(panel) > 0; ++e) {
             panel.energyChange[e].add(std::abs(energy[e] - panel.energy[e]));
         }
-        for (std::size_t b = 0; b < bases_.size() && panel.level > 0; ++b) {
+        for (std::size_t b = 0; b < bases_.size() && changesOf(panel) > 0; ++b) {
             panel.change[b].add(distance(ofBasis(panel.moments, b), ofBasis(panel.before, b)));
         }
         panel.energy = energy;
@@ -198,12 +212,15 @@ private:
         for (std::size_t b = 0; b < bases_.size(); ++b) norms_.push_back(norm(ofBasis(totals_, b)));
         expected_ = result_.error = 0;
         for (Panel& panel : panels_) {
-            panel.error = panelError(largestChanges(panel), mayBeSmooth_);
             panel.share = shareOf(panel);
+            const bool early = loose_ && !hasShownItself(panel);
+            panel.error = early ? earlyError(largestChanges(panel))
+                                : panelError(largestChanges(panel), mayBeSmooth_);
             expected_ += panel.error.expected;
             result_.error += panel.error.stated;
         }
-        if (result_.error > 0) result_.error += accuracyOfValues;
+        if (result_.error > 0)
+            result_.error += loose_ ? leastStated * options_.tolerance : accuracyOfValues;
         for (std::size_t e = 0; e < result_.energy.size(); ++e)
             result_.energyError[e] = result_.error * result_.energy[e];
     }
@@ -235,9 +252,11 @@ private:
         return largest;
     }
 
+    int changesOf(const Panel& panel) const { return panel.level - firstLevel_; }
+
     /// Whether a panel has as many changes as are needed to see how it converges.
     bool hasShownItself(const Panel& panel) const {
-        return !mayBeSmooth_ || panel.level >= leastLevel || panel.share < negligible;
+        return !mayBeSmooth_ || changesOf(panel) >= leastChanges || panel.share < negligible;
     }
 
     /// By how much the solution of a Gram system enlarges the last changes, relative to the
@@ -282,8 +301,8 @@ private:
     /// The panels to refine next: none once the errors add up to the tolerance.
     std::vector<std::size_t> unconverged() const {
         std::vector<std::size_t> active;
-        for (std::size_t p = 0; p < panels_.size(); ++p)
-            if (panels_[p].level > 0 && !hasShownItself(panels_[p])) active.push_back(p);
+        for (std::size_t p = 0; p < panels_.size() && !loose_; ++p)
+            if (changesOf(panels_[p]) > 0 && !hasShownItself(panels_[p])) active.push_back(p);
         if (!active.empty() || expected_ <= options_.tolerance) return active;
         const double share = 0.5 * options_.tolerance / static_cast<double>(panels_.size());
         for (std::size_t p = 0; p < panels_.size(); ++p) {
@@ -306,7 +325,9 @@ private:
     std::span<const Basis* const> bases_;
     Direction wo_;
     RefinementOptions options_;
-    bool mayBeSmooth_;                  ///< f is no interpolated table
+    bool mayBeSmooth_;  ///< f is no interpolated table
+    bool loose_;        ///< the tolerance, of such an f
+    int firstLevel_;
     double expected_ = 0;               ///< relative error, by which refinement goes
     std::vector<std::size_t> offsets_;  ///< of each basis among the moments
     std::vector<Panel> panels_;
