@@ -6,8 +6,8 @@
 namespace hshfit::inline representation {
 
 /// f(wi, wo) in 1/sr of a representation (`pairEvaluator` makes the evaluator), one value per
-/// channel: out[channel]. The same bits as for the pair in any batch; 0 where a direction is not
-/// above the horizon. Throws nothing for unit vectors. For callers that get one pair at a time,
+/// channel: out[channel]. The value of the pair in a batch but for rounding; 0 where a direction is
+/// not above the horizon. Throws nothing for unit vectors. For callers that get one pair at a time,
 /// such as the inner loop of a path tracer; batches are faster.
 ///
 /// Allocates nothing but in a thread's first call for a larger form than before. Exceptions: a
