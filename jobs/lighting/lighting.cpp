@@ -238,6 +238,14 @@ std::unique_ptr<Brdf> truthOf(const std::string& path, const LightingExportOptio
     }
 }
 
+void sayWhatTimeLeftOut(const LightingExportOptions& options, std::size_t tried,
+                        const Listener& listener) {
+    const std::size_t asked =
+        options.errors.lights.empty() ? lightExamples().size() : options.errors.lights.size();
+    if (tried < asked)
+        listener.say(fmt::format("errors: the time was over after {} of {} lights", tried, asked));
+}
+
 }  // namespace
 
 LightingExport exportLighting(const std::string& path, const std::string& folder,
@@ -259,6 +267,7 @@ LightingExport exportLighting(const std::string& path, const std::string& folder
     if (options.measureError)
         errors = lightingErrors(lightingReferences(*truth, options.errors, listener), tables,
                                 models, options.errors);
+    if (options.measureError) sayWhatTimeLeftOut(options, errors.size() / models.size(), listener);
     requireReadable(*brdf);
 
     LightingExport result;

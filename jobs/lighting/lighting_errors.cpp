@@ -3,6 +3,7 @@
 #include <hshfit/light/catalog.h>
 #include <hshfit/pictures/picture_error.h>
 #include <hshfit/rendering/lit_picture.h>
+#include <hshfit/time_limit.h>
 
 #include <nlohmann/json.hpp>
 
@@ -44,7 +45,9 @@ std::vector<LightingReference> lightingReferences(const Brdf& truth,
     if (specs.empty())
         for (const std::string& spec : options.lights.empty() ? lightExamples() : options.lights)
             specs.push_back(parseLights(spec));
+    const TimeLimit limit = TimeLimit(options.seconds).share(2);
     for (const LightSpecification& spec : specs) {
+        if (!references.empty() && limit.isOver()) break;
         LightingReference reference{.light = spec.text, .lights = spec.lights};
         const DirectIntegral direct(reference.lights);
         reference.picture = renderByIntegration(truth, points, view, direct, how);
@@ -62,8 +65,10 @@ std::vector<LightingError> lightingErrors(std::span<const LightingReference> ref
                                           const LightingErrorOptions& options) {
     const View view = lightingView(options);
     const SurfacePoints points = spherePoints(view, options.size, 1);
+    const TimeLimit limit = TimeLimit(options.seconds).share(2);
     std::vector<LightingError> errors;
     for (const LightingReference& reference : references) {
+        if (!errors.empty() && limit.isOver()) break;
         const LightingEnvironment light = lightFor(tables, reference.lights, options.tables);
         for (const LightingModel* model : models) {
             const lighting::ShadedPicture shaded =

@@ -19,6 +19,8 @@ struct LightingErrorOptions {
     int size = 48;                               ///< pixels along an edge of the sphere's picture
     double viewTheta = 75, viewPhi = 0;
     double tolerance = 5e-3;  ///< of direct integration
+    /// After that time no further light is tried; one always is.
+    std::optional<double> seconds = {};
     LightingTableOptions tables = {};
 };
 
@@ -45,13 +47,15 @@ struct LightingReference {
     LitPicture picture = {};
     double nanoseconds = 0;  ///< of one thread, for a point
 };
-/// renderByIntegration of `truth` under every light. Throws UsageError, InputError, NumericError.
+/// renderByIntegration of `truth` under every light, or under those that half of the time is enough
+/// for. Throws UsageError, InputError, NumericError.
 std::vector<LightingReference> lightingReferences(const Brdf& truth,
                                                   const LightingErrorOptions& options,
                                                   const Listener& listener = {});
 
 /// Every model under every light against the references, which have the same options: relative L2,
-/// FLIP, and the largest difference of a pixel and where it is.
+/// FLIP, and the largest difference of a pixel and where it is. The first lights alone where the
+/// other half of the time is over.
 std::vector<LightingError> lightingErrors(std::span<const LightingReference> references,
                                           const LightingTables& tables,
                                           std::span<const LightingModel* const> models,

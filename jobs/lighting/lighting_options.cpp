@@ -33,6 +33,11 @@ constexpr OptionRow lightingRows[] = {
               "Of --lighting prefiltered, lookups besides the diffuse one, 1 to 3"}
         .within(Bounds<int>{1, 3})
         .onlyFor(exports::lighting),
+    OptionRow{"seconds", at<&LightingExportOptions::errors, &LightingErrorOptions::seconds>,
+              "Of --lighting, end the measuring of errors after that time, with the lights that "
+              "were tried by then"}
+        .within(bounds::seconds)
+        .onlyFor(exports::lighting),
 };
 
 constexpr OptionRow tradeRows[] = {

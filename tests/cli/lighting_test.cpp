@@ -71,6 +71,20 @@ TEST_F(Lighting, TablesLightAndShadersOfAFormAreWrittenWithTheirErrors) {
     EXPECT_EQ(word(cube, 80) + word(cube, 88), cube.size());
 }
 
+TEST_F(Lighting, ErrorsAreMeasuredUnderTheLightsThatTheTimeIsEnoughFor) {
+    project("lambert:kd=.5", "timed.json", "--order 2 --outgoing 8");
+    const std::string base = "export " + path("timed.json") + " --target glsl-es -o " + path("out");
+    const Answer answer = run(base + " --lighting split-sum,ltc --seconds 0.01 --json");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "lighting"));
+    const std::size_t errors = Json::parse(answer.out)["errors"].size();
+    EXPECT_GE(errors, 2u);
+    const std::string said = fmt::format("the time was over after {} of ", errors / 2);
+    EXPECT_NE(answer.err.find(said), std::string::npos) << answer.err;
+    EXPECT_EQ(run(base + " --seconds 1").code, 2);
+    EXPECT_EQ(run(base + " --lighting ltc --seconds -1").code, 2);
+}
+
 TEST_F(Lighting, BrushedMaterialsHaveTablesByAzimuth) {
     project("ward:ax=.5,ay=.9", "ward.json", "--order 4 --outgoing 8x8");
     Json written;
