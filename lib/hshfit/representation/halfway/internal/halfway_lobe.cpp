@@ -225,7 +225,7 @@ HalfwayValues startFrom(const LobeFound& found, const HalfwayModel& model,
     for (std::size_t c = 0; c < channels; ++c) {
         std::vector<double> ratios;
         for (std::size_t k = c; k < now.size(); k += channels) {
-            // Where both are black they say nothing.
+            // A ratio of two floors says nothing.
             if (std::max(samples.values[k], now[k]) > model.floor)
                 ratios.push_back((samples.values[k] + 1e-2 * model.floor) / (now[k] + model.floor));
         }
