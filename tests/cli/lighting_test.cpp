@@ -1,6 +1,7 @@
 #include "places.h"
 #include "program.h"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
