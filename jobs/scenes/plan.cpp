@@ -47,6 +47,10 @@ plan::Plan planScene(const std::string& path, const std::string& output,
         return formulaCandidates({brdf, material.brdf, material.name}, kinds);
     };
     how.progress = listener.part("plan");
+    how.found = [&](const scene::Material& material, const plan::Choice& choice) {
+        listener.say(fmt::format("{}: so far {} bytes, error {:.3g} of {:g}", material.name,
+                                 choice.bytes, choice.error, material.budget.error));
+    };
     plan::Plan result = plan::planScene(
         read, [](const std::string& spec) { return openBrdf(spec); }, how);
     const auto hasPlan = [](const plan::MaterialPlan& each) { return each.accepted.has_value(); };

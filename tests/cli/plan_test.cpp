@@ -169,6 +169,7 @@ protected:
         EXPECT_TRUE(keepsSchema(answer.out, "plan"));
         EXPECT_TRUE(keepsSchema(read(file), "scene"));
         EXPECT_EQ(answer.out, unstated(read(path("plan/plan.json"))));
+        EXPECT_NE(answer.err.find(": so far "), std::string::npos) << answer.err;
         const Json report = Json::parse(answer.out), scene = Json::parse(read(file));
         const double budget = scene["budget"]["error"];
         for (std::size_t k = 0; k < report["materials"].size(); ++k) {

@@ -301,9 +301,12 @@ PairSummary summaryOf(const PairSample& pairs, const PairReference::Result& erro
     return summary;
 }
 
-PairSummary summaryOf(const Brdf& brdf, const Brdf& g) {
-    const PairReference reference(brdf, spreadPairs());
+PairSummary summaryOf(const PairReference& reference, const Brdf& g) {
     return summaryOf(reference.pairs(), reference.errorsOf(evaluateOn(g, reference.pairs())));
+}
+
+PairSummary summaryOf(const Brdf& brdf, const Brdf& g) {
+    return summaryOf(PairReference(brdf, spreadPairs()), g);
 }
 
 std::string textOf(const PairSummary& summary) {

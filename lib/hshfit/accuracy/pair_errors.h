@@ -108,6 +108,7 @@ struct PairSummary {
     double albedoFrom = 0, albedoTo = 0;  ///< and theta_o, of the pairs that it is averaged over
 };
 PairSummary summaryOf(const PairSample& pairs, const PairReference::Result& errors);
+PairSummary summaryOf(const PairReference& reference, const Brdf& g);
 /// Errors of `g` on spreadPairs(): the same numbers for every caller. Throws as PairReference does.
 PairSummary summaryOf(const Brdf& brdf, const Brdf& g);
 /// Three lines without indentation, each ended.

@@ -36,7 +36,7 @@ std::optional<double> RowMeasurement::capturedBy(const Brdf& g) const {
 Row RowMeasurement::rowOf(const Candidate& candidate) const {
     Row row{.kind = candidate.kind, .name = candidate.name, .made = candidate.make()};
     const Brdf& g = row.made.brdf ? *row.made.brdf : source_;
-    row.picture = pictures_.errorOf(g);
+    row.picture = row.made.brdf ? pictures_.errorOf(g) : pictures_.errorOfItself();
     row.captured = capturedBy(g);
     row.poor = poorReason(row.captured, row.picture, bounds_);
     row.lost = lossSentence(row.picture);

@@ -75,6 +75,10 @@ public:
     /// Makes and measures it; throws what Candidate::make throws.
     Row rowOf(const Candidate& candidate) const;
 
+    const PictureReference& pictures() const { return pictures_; }
+    /// The source on spreadPairs(); none where its energy is not finite.
+    const std::optional<PairReference>& pairs() const { return pairs_; }
+
 private:
     std::optional<double> capturedBy(const Brdf& g) const;
 
@@ -82,7 +86,7 @@ private:
     PoorBounds bounds_;
     const gpu::ShaderCosts* costs_;
     PictureReference pictures_;
-    std::optional<PairReference> pairs_;  ///< none: the energy is not finite
+    std::optional<PairReference> pairs_;
 };
 
 /// The rows of candidates, and those that could not be had.

@@ -292,7 +292,14 @@ PictureReference::~PictureReference() = default;
 PictureReference::PictureReference(PictureReference&&) noexcept = default;
 
 PictureError PictureReference::errorOf(const Brdf& g) const {
-    const SeenBrdf other(g);
+    return errorOf(SeenBrdf(g));
+}
+
+PictureError PictureReference::errorOfItself() const {
+    return errorOf(*seen_);
+}
+
+PictureError PictureReference::errorOf(const SeenBrdf& other) const {
     PictureError error{.channels = channelsOf(seen_->grey && other.grey)};
     compareSpheres(*seen_, other, error);
     compareAlbedos(*seen_, other, error);

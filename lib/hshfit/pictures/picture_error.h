@@ -57,11 +57,15 @@ public:
     PictureReference(PictureReference&&) noexcept;
 
     PictureError errorOf(const Brdf& g) const;
+    /// `errorOf` the source itself, from its pictures.
+    PictureError errorOfItself() const;
     /// `flip` of `errorOf`, or none where its mean exceeds `most`: lights are drawn, points first
     /// and those that need albedos last, until that is certain.
     std::optional<OverLights> flipWithin(const Brdf& g, double most) const;
 
 private:
+    PictureError errorOf(const SeenBrdf& other) const;
+
     std::unique_ptr<const SeenBrdf> seen_;
 };
 

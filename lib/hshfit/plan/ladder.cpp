@@ -61,6 +61,10 @@ public:
                 }
             }
         }
+        halfway();
+    }
+
+    void halfway() {
         // The halfway form is not linear and gains little from a diffuse part taken out.
         if (split_ == "diffuse") return;
         for (const HalfwayOrders& orders : halfwaySizes) {
@@ -161,8 +165,14 @@ std::vector<Rung> ladder(std::span<const LadderSource> sources, const LadderOpti
             Builder(rungs, sources[s], s, split, options).build();
         }
     }
-    std::stable_sort(rungs.begin(), rungs.end(),
-                     [](const Rung& a, const Rung& b) { return a.bytes < b.bytes; });
+    std::ranges::stable_sort(rungs, std::less{}, &Rung::bytes);
+    return rungs;
+}
+
+std::vector<Rung> halfwayRungs(const LadderSource& source, const LadderOptions& options) {
+    std::vector<Rung> rungs;
+    Builder(rungs, source, 0, 0, options).halfway();
+    std::ranges::stable_sort(rungs, std::less{}, &Rung::bytes);
     return rungs;
 }
 

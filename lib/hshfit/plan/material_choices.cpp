@@ -23,6 +23,8 @@ constexpr std::size_t shownCheaper = 3;
 /// Limits of the search for a dearer choice with half the error.
 constexpr std::size_t farthestDearer = 4;
 constexpr std::size_t mostTriedDearer = 150;
+/// Sizes of the halfway form that are tried to tell a first choice.
+constexpr std::size_t mostTriedFirst = 3;
 /// The ratio of the budget to the tolerance of a file's projection.
 constexpr double fileShare = 100;
 /// The number of forms that are timed if times decide.
@@ -106,9 +108,14 @@ std::optional<double> MaterialSearch::unroundedError(const Rung& rung) {
     return errorOf(unrounded(rung));
 }
 
-const PictureReference& MaterialSearch::pictures() {
-    if (!pictures_) pictures_.emplace(*versions_.front().brdf);
-    return *pictures_;
+const choice::RowMeasurement& MaterialSearch::measurement() {
+    if (!measurement_) measurement_.emplace(*versions_.front().brdf, PoorBounds{}, costs_);
+    return *measurement_;
+}
+
+const LatticeCheck& MaterialSearch::check() {
+    if (!check_) check_.emplace(scene_, plan_.material, *versions_.front().brdf);
+    return *check_;
 }
 
 bool MaterialSearch::looksRight(const Rung& rung) {
@@ -118,7 +125,7 @@ bool MaterialSearch::looksRight(const Rung& rung) {
     if (added) {
         Part& part = partOf(rung);
         const auto brdf = reconstruct(represent(*part.kept, rung.form, part.added), open_);
-        found->second = pictures().flipWithin(*brdf, *most).has_value();
+        found->second = measurement().pictures().flipWithin(*brdf, *most).has_value();
     }
     return found->second;
 }
@@ -143,7 +150,7 @@ Choice MaterialSearch::shownChoice(const Rung& rung, double error) {
     if (!plan_.material.budget.flip) return choice;
     Part& part = partOf(rung);
     const auto brdf = reconstruct(represent(*part.kept, rung.form, part.added), open_);
-    choice.flip = pictures().flipWithin(*brdf, never);
+    choice.flip = measurement().pictures().flipWithin(*brdf, never);
     return choice;
 }
 
@@ -161,7 +168,6 @@ Representation MaterialSearch::fileOf(const Rung& rung) {
 }
 
 std::optional<Accepted> MaterialSearch::accept(const Rung& rung) {
-    const Version& version = versions_[rung.source];
     std::optional<double>& known = errors_[keyOf(rung)];
     Accepted result{.choice = choiceOf(rung, 0), .representation = {}};
     try {
@@ -173,22 +179,37 @@ std::optional<Accepted> MaterialSearch::accept(const Rung& rung) {
     }
     result.choice.bytes = result.representation.bytes();
     result.choice.error = light_->errorOf(radianceOf(result.representation, partOf(rung)));
-    const Verification check = verify(scene_, plan_.material, *versions_.front().brdf,
-                                      *reconstruct(result.representation, open_));
-    result.verified = check.error;
-    result.thetas = check.thetas;
-    result.errors = check.byElevation;
+    const auto again = reconstruct(result.representation, open_);
+    const LatticeCheck::Result checked = check().of(*again);
+    result.verified = checked.error;
+    result.thetas = checked.thetas;
+    result.errors = checked.byElevation;
     const Budget& budget = plan_.material.budget;
     const bool holds = result.choice.error <= budget.error && result.verified <= budget.error &&
                        result.choice.bytes <= scene_.limits.bytes;
     if (!holds) known = std::max(result.choice.error, result.verified);
     if (!holds) return std::nullopt;
-    const auto again = reconstruct(result.representation, open_);
-    result.picture = pictures().errorOf(*again);
+    result.picture = measurement().pictures().errorOf(*again);
     if (result.picture.flip.mean > budget.flip.value_or(never)) return std::nullopt;
-    result.pairs = summaryOf(*version.brdf, *again);
+    // A version of one channel has pairs of its own.
+    const bool whole = rung.source == 0 && measurement().pairs();
+    result.pairs = whole ? summaryOf(*measurement().pairs(), *again)
+                         : summaryOf(*versions_[rung.source].brdf, *again);
     if (costs_) result.cost = costs_->of(result.representation);
     return result;
+}
+
+void MaterialSearch::sayFirst() {
+    if (!options_.found || limit_.isOver()) return;
+    std::size_t tried = 0;
+    for (const Rung& rung : halfwayRungs({.brdf = versions_.front().brdf.get()}, ladderOptions_)) {
+        if (rung.form.precision != Precision::half) continue;
+        if (++tried > mostTriedFirst) return;
+        const double error = errorOf(rung).value_or(never);
+        if (error > plan_.material.budget.error || !looksRight(rung)) continue;
+        options_.found(plan_.material, choiceOf(rung, error));
+        return;
+    }
 }
 
 bool MaterialSearch::makeWay(std::size_t place) {

@@ -100,19 +100,19 @@ std::vector<Radiance> MaterialLight::radianceOf(const PairEvaluator& evaluator,
     return result;
 }
 
-Verification verify(const Scene& scene, const Material& material, const Brdf& truth,
-                    const Brdf& approximation) {
-    const Views views = viewsOf(scene.views, checkStep, checkShift);
+LatticeCheck::LatticeCheck(const Scene& scene, const Material& material, const Brdf& brdf)
+    : budget_(material.budget), views_(viewsOf(scene.views, checkStep, checkShift)) {
     const std::size_t points = checkPoints / scene.lights.size() + 1;
-    std::vector<LightSamples> light;
-    for (const Frame& frame : framesOf(scene, material, truth)) {
-        light.push_back(latticeSamples(scene.lights, frame, points));
-    }
-    const std::vector<Radiance> expected = radianceIn(light, truth, views);
-    const std::vector<Radiance> actual = radianceIn(light, approximation, views);
-    return {.error = errorOf(material.budget, views, expected, actual),
-            .thetas = views.thetas,
-            .byElevation = errorsByElevation(material.budget, views, expected, actual)};
+    for (const Frame& frame : framesOf(scene, material, brdf))
+        light_.push_back(latticeSamples(scene.lights, frame, points));
+    expected_ = radianceIn(light_, brdf, views_);
+}
+
+LatticeCheck::Result LatticeCheck::of(const Brdf& approximation) const {
+    const std::vector<Radiance> actual = radianceIn(light_, approximation, views_);
+    return {.error = light::errorOf(budget_, views_, expected_, actual),
+            .thetas = views_.thetas,
+            .byElevation = errorsByElevation(budget_, views_, expected_, actual)};
 }
 
 }  // namespace hshfit::plan

@@ -237,6 +237,7 @@ MaterialPlan MaterialSearch::run() {
         refuse();
         return std::move(plan_);
     }
+    sayFirst();
     considerOneChannel();
     std::vector<LadderSource> sources;
     for (Version& version : versions_) {
@@ -270,16 +271,15 @@ MaterialPlan MaterialSearch::run() {
 
 void MaterialSearch::measureFormulas() {
     if (!options_.makeFormulas) return;
-    const Version& whole = versions_.front();
     const std::vector<choice::Candidate> candidates =
-        options_.makeFormulas(*whole.brdf, plan_.material, options_.formulas);
+        options_.makeFormulas(*versions_.front().brdf, plan_.material, options_.formulas);
     if (candidates.empty()) return;
     const Budget& budget = plan_.material.budget;
-    const choice::RowMeasurement measurement(*whole.brdf, {}, costs_);
-    for (choice::Row& row : choice::measureRows(measurement, candidates).rows) {
-        const Brdf& brdf = row.made.brdf ? *row.made.brdf : *whole.brdf;
-        const double error = light_->errorOf(light_->radianceOf(brdf));
-        const double verified = verify(scene_, plan_.material, *whole.brdf, brdf).error;
+    for (choice::Row& row : choice::measureRows(measurement(), candidates).rows) {
+        // Without a BRDF of its own it is the material itself.
+        const Brdf* const other = row.made.brdf.get();
+        const double error = other ? light_->errorOf(light_->radianceOf(*other)) : 0;
+        const double verified = other ? check().of(*other).error : 0;
         const bool within = std::max(error, verified) <= budget.error &&
                             (!budget.flip || row.picture.flip.mean <= *budget.flip);
         plan_.formulas.push_back(

@@ -93,6 +93,9 @@ struct PlanOptions {
     /// For the searches together. A large halfway form is made after it where none was found.
     std::optional<double> seconds = {};
     std::function<void(std::size_t, std::size_t)> progress = {};
+    /// Called for a material before its search, with a halfway form that keeps to the budget, where
+    /// one of the three smallest does.
+    std::function<void(const Material&, const Choice&)> found = {};
 };
 
 /// The cheapest form of every material within its error budget in the light of its scene.

@@ -382,6 +382,25 @@ TEST(Plan, TakesALargeFormWhereTheTimeIsOver) {
     EXPECT_TRUE(reason.starts_with("the time was over after 0 of")) << reason;
 }
 
+TEST(Plan, TellsAFormWithinTheBudgetBeforeItSearches) {
+    const DiscLight lamp{directionFromAngles(0.6, 1), 0.2, grey(1)};
+    const Scene scene = smallScene("phong:exponent=12,ks=0.3,kd=0.2", lamp, 0.05);
+    std::vector<Choice> told;
+    const Plan plan = planScene(scene, open, {.found = [&](const Material&, const Choice& choice) {
+                                    told.push_back(choice);
+                                }});
+    ASSERT_EQ(told.size(), 1U);
+    EXPECT_LE(told[0].error, 0.05);
+    ASSERT_TRUE(plan.materials[0].accepted);
+    EXPECT_LE(plan.materials[0].accepted->choice.bytes, told[0].bytes);
+    // By the other integration, of the form made anew.
+    const auto source = open(told[0].spec);
+    const auto again = reconstruct(represent(*source, told[0].form, open), open);
+    const LatticeCheck check(scene, scene.materials[0], *source);
+    EXPECT_NEAR(check.of(*again).error, told[0].error, 0.3 * told[0].error);
+    EXPECT_EQ(check.of(*source).error, 0);
+}
+
 TEST(Plan, SmoothLightBoundsTheOrder) {
     const SkyLight sky{SkyLight::Model::uniform, grey(1), {}};
     const Plan plan = planScene(smallScene("phong:exponent=8,ks=0.3", sky, 0.02), open);

@@ -45,6 +45,9 @@ struct LadderOptions {
 /// each in float32, half, unorm16 and unorm8.
 std::vector<Rung> ladder(std::span<const LadderSource> sources, const LadderOptions& options);
 
+/// The halfway forms alone, of the first split of a material's first version.
+std::vector<Rung> halfwayRungs(const LadderSource& source, const LadderOptions& options);
+
 /// The form without its precision: forms that share one projection.
 bool sameNumbers(const Form& a, const Form& b);
 

@@ -60,13 +60,25 @@ private:
 /// free and turns matter.
 std::vector<Frame> framesOf(const Scene& scene, const Material& material, const Brdf& brdf);
 
-/// The error of `approximation` against `truth` by lattice points, at views that lie between those
-/// of MaterialLight.
-struct Verification {
-    double error = 0;
-    std::vector<double> thetas, byElevation;
+/// The outgoing radiance of a material by lattice points, at views that lie between those of
+/// MaterialLight.
+class LatticeCheck {
+public:
+    struct Result {
+        double error = 0;
+        std::vector<double> thetas, byElevation;
+    };
+
+    LatticeCheck(const Scene& scene, const Material& material, const Brdf& brdf);
+
+    /// The errors of another BRDF in the place of the material's.
+    Result of(const Brdf& approximation) const;
+
+private:
+    Budget budget_;
+    Views views_;
+    std::vector<LightSamples> light_;
+    std::vector<Radiance> expected_;
 };
-Verification verify(const Scene& scene, const Material& material, const Brdf& truth,
-                    const Brdf& approximation);
 
 }  // namespace hshfit::plan

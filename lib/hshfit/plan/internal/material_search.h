@@ -65,8 +65,9 @@ private:
     std::optional<double> unroundedError(const Rung& rung);
     /// Whether pictures of the rung's form, of kept projections, keep to the budget.
     bool looksRight(const Rung& rung);
-    /// The source's pictures, drawn at the first call.
-    const PictureReference& pictures();
+    /// The source's pictures and pairs, drawn at the first call.
+    const choice::RowMeasurement& measurement();
+    const LatticeCheck& check();
     double toleranceOf(const Form& form) const;
     Choice choiceOf(const Rung& rung, double error) const;
     /// The choice with its FLIP, if the budget bounds it.
@@ -76,6 +77,8 @@ private:
     /// Makes the file and verifies by lattice points; none if verification fails.
     std::optional<Accepted> accept(const Rung& rung);
 
+    /// Tells a form within the budget that takes little time to find, before the search.
+    void sayFirst();
     std::optional<std::size_t> firstWithin(std::size_t from);
     /// Moves the rung up if it takes more bytes than was foreseen; whether another is there now.
     bool makeWay(std::size_t place);
@@ -103,7 +106,8 @@ private:
     std::map<std::string, std::optional<double>> errors_;  ///< by source and form
     std::vector<double> lightBands_;                       ///< [l]: power of f's light in HSH
     int usefulOrder_ = 0;
-    std::optional<PictureReference> pictures_;
+    std::optional<choice::RowMeasurement> measurement_;
+    std::optional<LatticeCheck> check_;
     std::map<std::string, bool> looksRight_;  ///< by source and form
     std::string lastFailure_;
 };

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <tuple>
@@ -15,15 +16,35 @@ namespace {
 constexpr std::size_t maxTerms = 65536;
 constexpr int maxOrder = 256;
 
-/// p_0 .. p_{count-1} at x in [0, 1], by the recurrence of Legendre's polynomials.
-void legendre(double x, int count, double* out) {
-    const double t = 2 * x - 1;
-    double before = 0, now = 1;
+/// The degree along the mean goes to 6/5 of an order.
+constexpr int mostPolynomials = maxOrder * 6 / 5 + 2;
+/// Values of the polynomials of four variables, whose recurrences run side by side: each waits for
+/// its own divisions.
+using FourValues = std::array<double, 4>;
+
+/// sqrt(2 n + 1), the norm of p_n.
+const std::array<double, mostPolynomials>& norms() {
+    static const auto table = [] {
+        std::array<double, mostPolynomials> values;
+        for (int n = 0; n < mostPolynomials; ++n)
+            values[static_cast<std::size_t>(n)] = std::sqrt(2.0 * n + 1);
+        return values;
+    }();
+    return table;
+}
+
+/// p_0 .. p_{count-1} at each x in [0, 1], by the recurrence of Legendre's polynomials.
+void legendre(const FourValues& x, int count, FourValues* out) {
+    FourValues t, before{}, now{1, 1, 1, 1};
+    for (std::size_t k = 0; k < 4; ++k) t[k] = 2 * x[k] - 1;
+    const auto& norm = norms();
     for (int n = 0; n < count; ++n) {
-        out[n] = std::sqrt(2.0 * n + 1) * now;
-        const double next = ((2 * n + 1) * t * now - n * before) / (n + 1);
-        before = now;
-        now = next;
+        for (std::size_t k = 0; k < 4; ++k) {
+            out[n][k] = norm[static_cast<std::size_t>(n)] * now[k];
+            const double next = ((2 * n + 1) * t[k] * now[k] - n * before[k]) / (n + 1);
+            before[k] = now[k];
+            now[k] = next;
+        }
     }
 }
 
@@ -146,13 +167,10 @@ HalfwayTerms::HalfwayTerms(const HalfwayOrders& orders, const HalfwaySymmetry& s
 }
 
 void HalfwayTerms::evaluate(const HalfwayPoint& point, double* out) const {
-    // The degree along the mean goes to 6/5 of an order.
-    double alongMean[maxOrder * 6 / 5 + 2], alongProduct[maxOrder], alongV[maxOrder],
-        alongX[maxOrder];
-    legendre(point.mean, counts_.mean, alongMean);
-    legendre(point.product, counts_.product, alongProduct);
-    legendre(point.v, counts_.v, alongV);
-    legendre(point.x, counts_.x, alongX);
+    constexpr std::size_t mean = 0, product = 1, v = 2, x = 3;
+    FourValues values[mostPolynomials];
+    legendre({point.mean, point.product, point.v, point.x},
+             std::max({counts_.mean, counts_.product, counts_.v, counts_.x}), values);
     const double scale = std::sqrt(2.0) * point.x;
     int q = 0;
     double harmonic[2] = {1, 0};
@@ -168,9 +186,9 @@ void HalfwayTerms::evaluate(const HalfwayPoint& point, double* out) const {
             harmonic[0] = c * point.cosine - s * point.sine;
             harmonic[1] = c * point.sine + s * point.cosine;
         }
-        double factor = alongV[t.j];
+        double factor = values[t.j][v];
         if (!t.lobe) {
-            factor *= alongProduct[t.k];
+            factor *= values[t.k][product];
             if (t.exchange) factor *= point.gap;
         } else if (t.power() > 0) {
             factor *= point.x;
@@ -178,9 +196,9 @@ void HalfwayTerms::evaluate(const HalfwayPoint& point, double* out) const {
         }
         if (t.mirror) factor *= point.handed;
         if (q > 0) factor *= scale * harmonic[t.sine ? 1 : 0];
-        const double* along = t.lobe ? alongX : alongMean;
+        const std::size_t along = t.lobe ? x : mean;
         const std::size_t* place = position_.data() + run.first;
-        for (std::size_t i = 0; i < run.length; ++i) out[place[i]] = factor * along[i];
+        for (std::size_t i = 0; i < run.length; ++i) out[place[i]] = factor * values[i][along];
     }
 }
 

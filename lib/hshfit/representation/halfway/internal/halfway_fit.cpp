@@ -20,8 +20,8 @@ using Eigen::Index;
 constexpr std::size_t parts = 8;
 /// Samples whose terms are held at once: with a few hundred terms they stay in the cache.
 constexpr std::size_t chunk = 64;
-/// Terms of all pairs together that are held: 64 MiB.
-constexpr std::size_t mostHeld = std::size_t{1} << 23;
+/// Terms that are held: 8 MiB. A default form takes 2 % less time with 64, and 22 % more with none.
+constexpr std::size_t mostHeld = std::size_t{1} << 20;
 /// The pull of coefficients to 0: what no sample sees stays small.
 constexpr double pull = 1e-6;
 /// Weights of the ways to draw pairs, by HalfwaySpread.
@@ -138,12 +138,11 @@ HalfwayProducts::HalfwayProducts(const HalfwayModel& model, const std::vector<Di
     : model_(model),
       pairs_(pairs),
       rows_((model.terms.size() + gramPadding - 1) / gramPadding * gramPadding) {
-    if (!held || rows_ * pairs.size() > mostHeld) return;
-    terms_.resize(rows_ * pairs.size());
-    weights_.resize(pairs.size());
+    const std::size_t count = held ? std::min(pairs.size(), mostHeld / rows_) : 0;
+    terms_.resize(rows_ * count);
+    weights_.resize(count);
     tbb::parallel_for(std::size_t{0}, parts, [&](std::size_t part) {
-        const std::size_t first = pairs.size() * part / parts,
-                          last = pairs.size() * (part + 1) / parts;
+        const std::size_t first = count * part / parts, last = count * (part + 1) / parts;
         compute(first, last - first, terms_.data() + rows_ * first, weights_.data() + first);
     });
 }
@@ -160,7 +159,7 @@ void HalfwayProducts::compute(std::size_t first, std::size_t count, double* term
 }
 
 void HalfwayProducts::find(std::size_t first, std::size_t count, Columns& columns) const {
-    if (!weights_.empty()) {
+    if (first + count <= weights_.size()) {
         columns.terms = terms_.data() + rows_ * first;
         columns.weights = weights_.data() + first;
         return;

@@ -44,8 +44,8 @@ struct HalfwayData {
     double huber;
 };
 
-/// The terms at pairs of directions, which no coefficient changes: those of all pairs, `held` where
-/// that takes little memory, or else computed when they are asked for.
+/// The terms at pairs of directions, which no coefficient changes. The terms of the first pairs are
+/// `held`, as many as take little memory; those of the others are computed when they are asked for.
 class HalfwayProducts {
 public:
     HalfwayProducts(const HalfwayModel& model, const std::vector<DirectionPair>& pairs, bool held);
