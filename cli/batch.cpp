@@ -113,6 +113,7 @@ void run(const BatchArguments& arguments, Globals& globals) {
     document["done"] = result.done;
     document["kept"] = result.kept;
     document["failed"] = result.failures.size();
+    if (options.seconds) document["left"] = result.left;
     document["seconds"] = result.seconds;
     document["failures"] = Json::array();
     for (const jobs::ItemRecord& record : result.failures)
@@ -123,6 +124,10 @@ void run(const BatchArguments& arguments, Globals& globals) {
         printText(fmt::format("{}: {} items, {} done ({} of them kept), {} failed, {:.3g} s\n",
                               arguments.manifest, result.items, result.done, result.kept,
                               result.failures.size(), result.seconds));
+    if (result.left > 0)
+        endWithoutNumbers(globals, fmt::format("the time was over before {} of {} items began; the "
+                                               "same command makes them",
+                                               result.left, result.items));
     reportFailed(result.failures, result.items, globals);
 }
 

@@ -84,12 +84,17 @@ void runIlluminate(const IlluminateArguments& arguments, const Globals& globals)
     printText(text);
 }
 
+jobs::IlluminateMethod otherThan(jobs::IlluminateMethod method) {
+    using enum jobs::IlluminateMethod;
+    return method == path ? radianceCache : path;
+}
+
 /// Throws UsageError for an option of the other method.
 void refuseMisplaced(const CLI::App& command, jobs::IlluminateMethod method) {
     for (const auto rows : illuminateRows())
         if (const auto given = misplacedOption(command, rows, jobs::illuminateBit(method)))
-            throw UsageError(fmt::format("{} is for --method radiance-cache, not {}", given->name,
-                                         jobs::nameOf(method)));
+            throw UsageError(fmt::format("{} is for --method {}, not {}", given->name,
+                                         jobs::nameOf(otherThan(method)), jobs::nameOf(method)));
 }
 
 }  // namespace

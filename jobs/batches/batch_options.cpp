@@ -21,6 +21,9 @@ constexpr OptionRow batchRows[] = {
         .takes({.files = Files::added}),
     OptionRow{"force", at<&BatchRequest::run, &BatchOptions::force>,
               "Do again what is done and valid"},
+    OptionRow{"seconds", at<&BatchRequest::run, &BatchOptions::seconds>,
+              "Begin no item after that time; the next run makes the others (default: no end)"}
+        .within(bounds::seconds),
     OptionRow{"check", at<&BatchRequest::check>, "Check the manifest and run nothing"}.notWith(
         "status merge"),
     OptionRow{"list", at<&BatchRequest::list>,

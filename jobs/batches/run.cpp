@@ -9,6 +9,7 @@
 #include "workers.h"
 
 #include <hshfit/error.h>
+#include <hshfit/time_limit.h>
 
 #include <fmt/format.h>
 
@@ -16,6 +17,7 @@
 #include <numeric>
 #include <optional>
 #include <thread>
+#include <utility>
 
 namespace hshfit::jobs {
 
@@ -61,7 +63,8 @@ public:
           result_(result),
           share_(share),
           store_(folder),
-          writer_(store_) {
+          writer_(store_),
+          limit_(options.seconds) {
         for (const std::size_t i : share.items) costLeft_ += share.costs[i];
         result_.items = share.items.size();
     }
@@ -74,6 +77,10 @@ public:
         std::size_t next = 0, busy = 0;
         const auto feed = [&](std::size_t worker) {
             while (next < items.size()) {
+                if (limit_.isOver()) {
+                    result_.left += items.size() - std::exchange(next, items.size());
+                    return;
+                }
                 const std::size_t item = items[next++];
                 auto order = orderFor(item);
                 if (!order) continue;
@@ -165,6 +172,7 @@ private:
     const ShardWork& share_;
     BatchStore store_;
     StoreWriter writer_;
+    const TimeLimit limit_;
     FileSums sums_;
     std::vector<std::size_t> postponed_, itemOf_;
     double costLeft_ = 0, costMade_ = 0;

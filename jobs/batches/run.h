@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,8 @@ struct BatchOptions {
     std::size_t memory = 0;
     std::string costs = {};  ///< times.csv of an earlier batch; empty: estimates
     bool force = false;      ///< what is done and valid is done again
+    /// After it no item begins, and those at work are finished. None: no end.
+    std::optional<double> seconds = {};
 };
 
 /// A finished item, or one that was valid, and how far the batch is.
@@ -38,6 +41,7 @@ struct BatchRun {
     std::size_t items = 0;                  ///< of this shard
     std::size_t done = 0;                   ///< now
     std::size_t kept = 0;                   ///< were there and valid
+    std::size_t left = 0;                   ///< not begun when the time was over
     std::vector<ItemRecord> failures = {};  ///< sorted by name
     double seconds = 0;
 };
@@ -50,7 +54,8 @@ std::vector<std::size_t> itemsOfShard(const Manifest& manifest, const BatchProgr
 /// Makes the items of a manifest, or a shard of them, in `folder`/items/NAME: the result of the
 /// command, answer.json (what it prints as JSON) and record.json. Results whose inputs, options
 /// and version of the program are as they were are kept. A failed item does not stop the others;
-/// failed items are tried again by the next run. Results do not depend on shards or processes.
+/// failed items are tried again by the next run, and those begin that the time did not suffice for.
+/// Results do not depend on shards or processes.
 ///
 /// Forks: the process must have no other threads. Throws InputError for a manifest that cannot be
 /// read, UsageError, OutputError.

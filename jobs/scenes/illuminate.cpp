@@ -57,7 +57,7 @@ ReferenceError errorAgainst(const RgbPicture& reference, const RgbPicture& pictu
 /// A picture by either method, with its time.
 PathPicture taken(const SurfaceScene& scene, RadianceCache* cache, const Camera& camera,
                   const IlluminateOptions& options, const Listener& listener, KeptRows* kept,
-                  IlluminatedCamera& result) {
+                  const TimeLimit& limit, IlluminatedCamera& result) {
     const auto start = Clock::now();
     const double cpu = cpuSeconds();
     PathPicture picture;
@@ -73,6 +73,11 @@ PathPicture taken(const SurfaceScene& scene, RadianceCache* cache, const Camera&
     } else {
         PathOptions path = options.path;
         path.progress = listener.part(camera.name);
+        path.samples = samplesWithin(scene, camera, path, limit);
+        if (path.samples < options.path.samples)
+            listener.say(fmt::format("{}: {} of {} paths a pixel fit into the time", camera.name,
+                                     path.samples, options.path.samples));
+        result.samples = path.samples;
         picture = tracePaths(scene, camera, path, kept ? kept->rows() : PathRows{});
         if (kept) result.resumedRows = kept->taken();
     }
@@ -87,14 +92,17 @@ PathPicture taken(const SurfaceScene& scene, RadianceCache* cache, const Camera&
 IlluminatedCamera pictured(const SurfaceScene& scene, std::span<const Light> lights,
                            RadianceCache* cache, const Camera& camera,
                            const IlluminateOptions& options, const Listener& listener,
-                           KeptRows* kept, FileSet& files) {
-    IlluminatedCamera result{.name = camera.name, .width = camera.width, .height = camera.height};
-    PathPicture traced = taken(scene, cache, camera, options, listener, kept, result);
+                           KeptRows* kept, const TimeLimit& limit, FileSet& files) {
+    IlluminatedCamera result{.name = camera.name,
+                             .width = camera.width,
+                             .height = camera.height,
+                             .samples = options.path.samples};
+    PathPicture traced = taken(scene, cache, camera, options, listener, kept, limit, result);
     requirePossible({.name = (files.folder() / (camera.name + ".exr")).string(),
                      .width = camera.width,
                      .radiance = traced.radiance,
                      .error = traced.error,
-                     .samples = options.path.samples},
+                     .samples = result.samples},
                     scene, lights);
     const RgbPicture picture{camera.width, camera.height, std::move(traced.radiance)};
     const RgbPicture error{camera.width, camera.height, std::move(traced.error)};
@@ -103,7 +111,7 @@ IlluminatedCamera pictured(const SurfaceScene& scene, std::span<const Light> lig
     for (const float value : picture.values) result.mean += static_cast<double>(value) / count;
     for (const float value : error.values)
         squares += static_cast<double>(value) * static_cast<double>(value) / count;
-    if (result.mean > 0 && options.path.samples > 1) {
+    if (result.mean > 0 && result.samples > 1) {
         const auto largest = std::ranges::max_element(error.values);
         const auto pixel = static_cast<int>((largest - error.values.begin()) / 3);
         result.standardError = std::sqrt(squares) / result.mean;
@@ -123,7 +131,7 @@ IlluminatedCamera pictured(const SurfaceScene& scene, std::span<const Light> lig
         writeRgbExr(picture, more, file,
                     {{"hshfit:generator", std::string("hshfit ") + version},
                      {"hshfit:method", std::string(nameOf(options.method))},
-                     {"hshfit:samples", std::to_string(options.path.samples)}});
+                     {"hshfit:samples", std::to_string(result.samples)}});
     });
     files.write(camera.name + ".png", rgbPng(picture, result.stops));
     std::vector<const char*> extensions{".exr", ".png"};
@@ -212,15 +220,17 @@ Illuminated illuminate(const std::string& path, const std::string& folder,
         result.cacheCpuSeconds = cpuSeconds() - cpu;
     }
     result.preparationSeconds = secondsSince(start);
+    const TimeLimit limit(options.seconds);
     for (const Camera* camera : cameras) {
         if (options.resume) {
             const auto place = files.folder() / (".hshfit-" + camera->name + ".partial");
             kept.push_back(
                 std::make_unique<KeptRows>(place.string(), inputs, *camera, options.path));
         }
+        const auto left = static_cast<double>(cameras.size() - result.cameras.size());
         result.cameras.push_back(pictured(scene, read.lights, cache.get(), *camera, options,
                                           listener, kept.empty() ? nullptr : kept.back().get(),
-                                          files));
+                                          limit.share(left), files));
     }
     if (cache && !options.records.empty()) writeKept(*cache, options.records, recordsKey);
     files.commit();

@@ -40,7 +40,9 @@ struct IlluminateOptions {
     /// An OpenEXR picture of the same size that `relative_mse` is measured against; empty: none.
     std::string reference = {};
     std::optional<double> exposure = {};  ///< stops of PNG files; none: automatic
-    bool force = false;                   ///< replace existing files
+    /// For the pictures together; each is of as many paths as fit into its share. None: no end.
+    std::optional<double> seconds = {};
+    bool force = false;  ///< replace existing files
     /// Keep the finished rows of each camera in FOLDER/.hshfit-CAMERA.partial until the files are
     /// written, and take those that an earlier run kept there.
     bool resume = false;
@@ -71,6 +73,7 @@ struct IlluminatedCamera {
     std::string name;
     int width = 0, height = 0;
     double seconds = 0, cpuSeconds = 0;  ///< of the picture
+    int samples = 0;                     ///< of a pixel
     std::size_t rays = 0, cut = 0;
     std::size_t resumedRows = 0;                                     ///< of an earlier run
     std::optional<std::size_t> records = {}, made = {}, bytes = {};  ///< of the cache

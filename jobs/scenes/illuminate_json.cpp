@@ -48,6 +48,7 @@ Json cameraJson(const IlluminatedCamera& camera) {
                  {"height", camera.height},
                  {"seconds", camera.seconds},
                  {"cpu_seconds", camera.cpuSeconds},
+                 {"samples", camera.samples},
                  {"rays", camera.rays},
                  {"records", orNull(camera.records)},
                  {"new_records", orNull(camera.made)},

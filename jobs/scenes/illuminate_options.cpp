@@ -75,6 +75,12 @@ constexpr OptionRow illuminateRows[] = {
     OptionRow{"resume", at<&IlluminateOptions::resume>,
               "Keep finished rows in OUTPUT/.hshfit-CAMERA.partial until the picture is written, "
               "and go on from those of a run that was stopped"},
+    OptionRow{"seconds", at<&IlluminateOptions::seconds>,
+              "Take only as many paths through each pixel as fit into that time, two at least "
+              "(default: no end)"}
+        .within(bounds::seconds)
+        .notWith("resume")
+        .onlyFor(illuminateBit(IlluminateMethod::path)),
     OptionRow{"force", at<&IlluminateOptions::force>, "Replace existing files"},
     OptionRow{"records", at<&IlluminateOptions::records>,
               "File of records: read if it stands, and written with those that are added"}

@@ -198,8 +198,8 @@ void describe(const TransferMesh& mesh, const SceneSurfaces& surfaces, Transferr
 
 /// Traces the rays, after a check of the memory that all of the work needs.
 GatheredTransfer gatheredOf(const TransferMesh& mesh, const RayScene& rays, Checkpoint* kept,
-                            const Listener& listener, Transferred& done) {
-    const TransferOptions& options = done.options;
+                            const TimeLimit& limit, const Listener& listener, Transferred& done) {
+    TransferOptions& options = done.options;
     GatheringOptions gathering{.order = options.order,
                                .rays = options.rays,
                                .localOrder = options.localOrder,
@@ -211,6 +211,11 @@ GatheredTransfer gatheredOf(const TransferMesh& mesh, const RayScene& rays, Chec
     requireMemory(done.memory, options, done.vertices);
     gathering.kept = partsOf(kept, 0);
     const auto start = Clock::now();
+    if (gathering.shadows) gathering.rays = raysWithin(mesh, rays, gathering, limit.share(3));
+    if (gathering.rays < options.rays)
+        listener.say(
+            fmt::format("{} of {} rays a vertex fit into the time", gathering.rays, options.rays));
+    options.rays = gathering.rays;
     GatheredTransfer gathered = gather(mesh, rays, gathering);
     done.seconds = secondsSince(start);
     done.embreeShare = gathered.seconds > 0 ? gathered.tracingSeconds / gathered.seconds : 0;
@@ -225,14 +230,20 @@ GatheredTransfer gatheredOf(const TransferMesh& mesh, const RayScene& rays, Chec
 }
 
 InterreflectedTransfer reflectedOf(const TransferMesh& mesh, const GatheredTransfer& gathered,
-                                   Checkpoint* kept, const Listener& listener, Transferred& done) {
+                                   Checkpoint* kept, const TimeLimit& limit,
+                                   const Listener& listener, Transferred& done) {
     const auto start = Clock::now();
     InterreflectedTransfer reflected = interreflect(mesh, gathered, done.materials,
                                                     {.passes = done.options.passes,
                                                      .progress = listener.part("passes"),
+                                                     .limit = limit,
                                                      .kept = partsOf(kept, firstPass)});
     done.passSeconds = secondsSince(start);
     done.energy = reflected.energy;
+    const int passes = static_cast<int>(reflected.energy.size()) - 1;
+    if (passes < done.options.passes)
+        listener.say(fmt::format("{} of {} passes fit into the time", passes, done.options.passes));
+    done.options.passes = passes;
     done.channels = reflected.channels;
     return reflected;
 }
@@ -273,10 +284,11 @@ Transferred transfer(const std::string& path, const std::string& folder,
         kept = std::make_unique<Checkpoint>((files.folder() / ".hshfit-transfer.partial").string(),
                                             keyOf(inputs, options, mesh));
     const RayScene rays = rayScene(mesh);
-    const GatheredTransfer gathered = gatheredOf(mesh, rays, kept.get(), listener, done);
+    const TimeLimit limit(options.seconds);
+    const GatheredTransfer gathered = gatheredOf(mesh, rays, kept.get(), limit, listener, done);
     InterreflectedTransfer reflected;
     if (options.kind == TransferKind::interreflected)
-        reflected = reflectedOf(mesh, gathered, kept.get(), listener, done);
+        reflected = reflectedOf(mesh, gathered, kept.get(), limit.share(2), listener, done);
     const TransferView view = viewOf(gathered, reflected, options.kind);
     done.vectorBytes = view.vectors.size_bytes();
     done.matrixBytes = view.matrices.size_bytes();
@@ -296,7 +308,7 @@ Transferred transfer(const std::string& path, const std::string& folder,
     const PictureScene scene{mesh, rays, view, done.materials, surfaces};
     ReferencePictures pictures;
     if (options.referenceSamples > 0)
-        pictures = takePictures(scene, read, cameras, lights, listener, files, done);
+        pictures = takePictures(scene, read, cameras, lights, limit, listener, files, done);
     files.write("transfer.html", pageOf(scene, pageKinds(gathered, reflected, options.kind),
                                         clusters ? &*clusters : nullptr, lights, cameras,
                                         pictures.references, done, listener));

@@ -45,6 +45,9 @@ struct TransferOptions {
     /// Paths through each pixel of the reference pictures; 0: no pictures.
     int referenceSamples = 0;
     std::string camera = {};  ///< of the pictures; empty: all
+    /// For rays, passes and pictures: rays, passes and paths that do not fit are left out. None: no
+    /// end.
+    std::optional<double> seconds = {};
     /// Keep finished parts in FOLDER/.hshfit-transfer.partial until all is written, and go on from
     /// those of a run that was stopped.
     bool resume = false;

@@ -65,6 +65,11 @@ constexpr OptionRow transferRows[] = {
     OptionRow{"resume", at<&TransferOptions::resume>,
               "Keep finished vertices and passes in OUTPUT/.hshfit-transfer.partial until all is "
               "written, and go on from those of a run that was stopped"},
+    OptionRow{"seconds", at<&TransferOptions::seconds>,
+              "Take only as many rays, passes and paths of pictures as fit into that time; the "
+              "page and the clusters come on top (default: no end)"}
+        .within(bounds::seconds)
+        .notWith("resume"),
     OptionRow{"force", at<&TransferOptions::force>, "Replace existing files"},
 };
 

@@ -67,7 +67,7 @@ double relativeNoise(const PathPicture& picture) {
 
 TransferPicture takePicture(const PictureScene& scene, const Camera& camera,
                             const NamedLight& light, const TransferOptions& options, KeptRows* kept,
-                            const Listener& listener, FileSet& files,
+                            const TimeLimit& limit, const Listener& listener, FileSet& files,
                             std::vector<PageReference>& references) {
     TransferPicture picture{.camera = camera.name, .light = light.name};
     const LightCoefficients coefficients = lightOf(light, options.order);
@@ -76,6 +76,10 @@ TransferPicture takePicture(const PictureScene& scene, const Camera& camera,
     std::vector<SurfaceObject> objects = scene.surfaces.objects;
     const SurfaceScene surfaces(scene.surfaces.materials, std::move(objects), light.lights);
     PathOptions paths = pathsOf(options);
+    paths.samples = samplesWithin(surfaces, camera, paths, limit);
+    if (paths.samples < options.referenceSamples)
+        listener.say(fmt::format("{} under {}: {} of {} paths a pixel fit into the time",
+                                 camera.name, light.name, paths.samples, options.referenceSamples));
     paths.progress = listener.part(camera.name);
     const PathPicture path = tracePaths(surfaces, camera, paths, kept ? kept->rows() : PathRows{});
     picture.noise = relativeNoise(path);
@@ -94,7 +98,7 @@ TransferPicture takePicture(const PictureScene& scene, const Camera& camera,
                      .width = camera.width,
                      .radiance = reference.values,
                      .error = path.error,
-                     .samples = options.referenceSamples},
+                     .samples = paths.samples},
                     surfaces, light.lights);
     // Coefficients of light are beyond its radiance at places.
     requirePossible({.name = (files.folder() / (stem + "_transfer.png")).string(),
@@ -109,7 +113,7 @@ TransferPicture takePicture(const PictureScene& scene, const Camera& camera,
         {camera.name, light.name,
          fmt::format("{} paths a pixel, noise {}; transfer differs by {}, at most by {} of "
                      "the mean.",
-                     options.referenceSamples, percent(picture.noise, 2),
+                     paths.samples, percent(picture.noise, 2),
                      percent(picture.errors.back().relativeL2, 2),
                      percent(picture.errors.back().maximum, 2)),
          stops, png});
@@ -139,8 +143,8 @@ LightCoefficients lightOf(const NamedLight& light, int order) {
 
 ReferencePictures takePictures(const PictureScene& scene, const scene::Scene& read,
                                const std::vector<const Camera*>& cameras,
-                               const std::vector<NamedLight>& lights, const Listener& listener,
-                               FileSet& files, Transferred& done) {
+                               const std::vector<NamedLight>& lights, const TimeLimit& limit,
+                               const Listener& listener, FileSet& files, Transferred& done) {
     ReferencePictures result;
     for (const NamedLight& light : lights) {
         scene::Scene lit = read;
@@ -156,7 +160,9 @@ ReferencePictures takePictures(const PictureScene& scene, const scene::Scene& re
                                                                     *camera, pathsOf(done.options)))
                            .get();
             }
-            done.pictures.push_back(takePicture(scene, *camera, light, done.options, rows, listener,
+            const std::size_t left = lights.size() * cameras.size() - done.pictures.size();
+            done.pictures.push_back(takePicture(scene, *camera, light, done.options, rows,
+                                                limit.share(static_cast<double>(left)), listener,
                                                 files, result.references));
         }
     }

@@ -55,7 +55,7 @@ struct ReferencePictures {
 /// with the error by order in `done`. Neither shows what is seen directly.
 ReferencePictures takePictures(const PictureScene& scene, const scene::Scene& read,
                                const std::vector<const Camera*>& cameras,
-                               const std::vector<NamedLight>& lights, const Listener& listener,
-                               FileSet& files, Transferred& done);
+                               const std::vector<NamedLight>& lights, const TimeLimit& limit,
+                               const Listener& listener, FileSet& files, Transferred& done);
 
 }  // namespace hshfit::jobs

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <optional>
 
 namespace hshfit {
@@ -14,11 +15,15 @@ public:
     explicit TimeLimit(std::optional<double> seconds) {
         if (seconds) end_ = Clock::now() + asDuration(*seconds);
     }
+    /// Infinity without an end.
+    double secondsLeft() const {
+        if (!end_) return std::numeric_limits<double>::infinity();
+        const std::chrono::duration<double> left = *end_ - Clock::now();
+        return std::max(0.0, left.count());
+    }
     /// One of `parts` equal shares of what is left.
     TimeLimit share(double parts) const {
-        if (!end_) return {};
-        const std::chrono::duration<double> left = *end_ - Clock::now();
-        return TimeLimit(std::max(0.0, left.count()) / parts);
+        return end_ ? TimeLimit(secondsLeft() / parts) : TimeLimit();
     }
 
     explicit operator bool() const { return end_.has_value(); }

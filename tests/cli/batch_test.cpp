@@ -184,6 +184,23 @@ TEST_F(Batch, FilesOfOptionsLieInTheFolderOfTheirItem) {
     EXPECT_EQ(answerOf("--status")["stale"], 1);
 }
 
+TEST_F(Batch, TheNextRunBeginsWhatTheTimeDidNotSufficeFor) {
+    manyItems();
+    const Answer cut = batch("--seconds 0.01 --threads 1 --json");
+    EXPECT_EQ(cut.code, 4) << cut.err;
+    EXPECT_TRUE(keepsSchema(cut.out, "batch"));
+    EXPECT_NE(cut.err.find("the time was over before"), std::string::npos) << cut.err;
+    const json first = json::parse(cut.out);
+    const int left = first["left"];
+    EXPECT_GT(left, 0);
+    EXPECT_EQ(first["done"].get<int>() + left, 24);
+    EXPECT_EQ(first["failed"], 0);
+    const json next = answerOf("--seconds 1000");
+    EXPECT_EQ(next["left"], 0);
+    EXPECT_EQ(next["done"], 24);
+    EXPECT_EQ(next["kept"], first["done"]);
+}
+
 TEST_F(Batch, AFailureIsRecordedAndTriedAgain) {
     write("broken.binary", "no MERL file");
     manifest(R"({"defaults": {"command": "project", "options": {"order": 3, "outgoing": "20,0"}}}

@@ -73,6 +73,25 @@ TEST_F(Illuminate, FindsTheRadianceOfAClosedRoom) {
     EXPECT_NEAR(mse, 2 * error * error, error * error);
 }
 
+TEST_F(Illuminate, TakesAsManyPathsAsFitIntoTheTime) {
+    ASSERT_EQ(taken(furnace(), "-o " + path("free") + " --samples 8").code, 0);
+    const Answer enough = taken(furnace(), "-o " + path("enough") + " --samples 8 --seconds 1000");
+    ASSERT_EQ(enough.code, 0) << enough.err;
+    EXPECT_EQ(hshfit::test::unstated(read(path("free/eye.exr"))),
+              hshfit::test::unstated(read(path("enough/eye.exr"))));
+    const Answer few =
+        taken(furnace(), "-o " + path("few") + " --samples 1000000 --seconds 1 --json");
+    ASSERT_EQ(few.code, 0) << few.err;
+    EXPECT_TRUE(keepsSchema(few.out, "illuminate"));
+    EXPECT_NE(few.err.find("of 1000000 paths a pixel fit into the time"), std::string::npos)
+        << few.err;
+    const Json camera = Json::parse(few.out)["cameras"][0];
+    EXPECT_GE(camera["samples"], 2);
+    EXPECT_LT(camera["samples"], 1000000);
+    EXPECT_LT(camera["seconds"], 60);
+    EXPECT_NEAR(camera["mean"], 2, 2 * camera["standard_error"].get<double>());
+}
+
 TEST_F(Illuminate, TakesTheSamePictureOnAnyNumberOfThreads) {
     for (const char* threads : {"1", "3"}) {
         ASSERT_EQ(taken(furnace(),
@@ -208,6 +227,8 @@ TEST_F(Illuminate, RefusesWhatTheMethodDoesNotTake) {
         EXPECT_NE(answer.err.find(message), std::string::npos) << answer.err;
         EXPECT_FALSE(std::filesystem::exists(path("none"))) << message;
     };
+    refuses(quick + "--seconds 5", "--seconds is for --method path");
+    refuses(" --seconds 5 --resume", "--resume");
     refuses(" --rays 100", "--rays is for --method radiance-cache");
     refuses(" --records some", "--records is for --method radiance-cache");
     refuses(quick + "--resume", "--resume is for --method path");

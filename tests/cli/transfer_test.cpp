@@ -92,6 +92,26 @@ TEST_F(Transfer, SaysWhatItWroteAndOthersReadIt) {
     EXPECT_LT(last, 0.5 * first);
 }
 
+TEST_F(Transfer, TakesOnlyTheRaysThatFitIntoTheTime) {
+    const std::string options = "--order 3 --passes 2 --edge .5 --json ";
+    const Answer free = transferred(corner(), options + "--rays 100");
+    const Answer enough = transferred(corner(), options + "--rays 100 --seconds 1000 --force");
+    ASSERT_EQ(enough.code, 0) << enough.err;
+    EXPECT_EQ(Json::parse(free.out)["noise"], Json::parse(enough.out)["noise"]);
+    const Answer few = transferred(
+        corner(), options + "--rays 1000000 --reference-samples 65536 --seconds 2 --force");
+    ASSERT_EQ(few.code, 0) << few.err;
+    EXPECT_TRUE(keepsSchema(few.out, "transfer"));
+    EXPECT_NE(few.err.find("of 1000000 rays a vertex fit into the time"), std::string::npos)
+        << few.err;
+    EXPECT_NE(few.err.find("of 65536 paths a pixel fit into the time"), std::string::npos)
+        << few.err;
+    const Json json = Json::parse(few.out);
+    const double vertices = json["vertices"], rays = json["rays"]["traced"];
+    EXPECT_GE(rays, 64 * vertices);
+    EXPECT_LT(rays, 1e6 * vertices);
+}
+
 TEST_F(Transfer, CompressesMatricesWithinTheAskedError) {
     const Answer answer =
         transferred(corner(),

@@ -445,4 +445,19 @@ GatheredTransfer gather(const TransferMesh& mesh, const RayScene& scene,
     return Gathering(mesh, scene, options).run();
 }
 
+std::size_t raysWithin(const TransferMesh& mesh, const RayScene& scene,
+                       const GatheringOptions& options, const TimeLimit& limit) {
+    constexpr std::size_t fewest = 64;
+    if (!limit || options.rays <= fewest) return options.rays;
+    GatheringOptions trial = options;
+    trial.rays = fewest;
+    trial.progress = {};
+    trial.kept = {};
+    const double before = limit.secondsLeft();
+    gather(mesh, scene, trial);
+    const double left = limit.secondsLeft(), perRay = (before - left) / fewest;
+    const auto most = static_cast<double>(options.rays), fit = perRay > 0 ? left / perRay : most;
+    return static_cast<std::size_t>(std::clamp<double>(fit, fewest, most));
+}
+
 }  // namespace hshfit::inline precomputed_transfer

@@ -2,6 +2,7 @@
 
 #include <hshfit/precomputed_transfer/transfer_mesh.h>
 #include <hshfit/rays/ray_scene.h>
+#include <hshfit/time_limit.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -94,6 +95,11 @@ std::size_t gatheringBytes(const TransferMesh& mesh, const GatheringOptions& opt
 
 /// The mesh's triangles for rays, one for each front.
 RayScene rayScene(const TransferMesh& mesh);
+
+/// As many rays of a vertex as fit into the time that is left, from 64 to `options.rays`, by the
+/// time that 64 of each take. All of them where there is no limit.
+std::size_t raysWithin(const TransferMesh& mesh, const RayScene& scene,
+                       const GatheringOptions& options, const TimeLimit& limit);
 
 /// Traces the rays of every vertex once. A ray starts 1/20 of the way from the vertex to the
 /// middle of a triangle around it, above that triangle, and so neither within nor behind a

@@ -117,7 +117,7 @@ InterreflectedTransfer interreflect(const TransferMesh& mesh, const GatheredTran
     result.energy.push_back(energyOf(mesh, materials, before.vectors, channels, slots));
     std::optional<RayPasses> rays;
     if (matrix > 0) rays.emplace(mesh, gathered, materials, channels);
-    for (int pass = 1; pass <= options.passes; ++pass) {
+    for (int pass = 1; pass <= options.passes && !options.limit.isOver(); ++pass) {
         const auto number = static_cast<std::size_t>(options.passes);
         const auto done = static_cast<std::size_t>(pass - 1);
         if (rays && !found(options.kept, done, now)) {

@@ -2,6 +2,7 @@
 
 #include <hshfit/precomputed_transfer/gathering.h>
 #include <hshfit/precomputed_transfer/transfer_material.h>
+#include <hshfit/time_limit.h>
 
 #include <cstddef>
 #include <span>
@@ -12,7 +13,8 @@ namespace hshfit::inline precomputed_transfer {
 struct InterreflectionOptions {
     int passes = 5;  ///< reflections before the last one, which is the vertex's own
     TransferProgress progress = {};
-    KeptParts kept = {};  ///< passes over rays, each by its number; those over links are quick
+    TimeLimit limit = {};  ///< no pass begins after it
+    KeptParts kept = {};   ///< passes over rays, each by its number; those over links are quick
 };
 
 /// Transfer with light that came by other surfaces, the sum over passes.

@@ -159,6 +159,24 @@ PathPicture tracePaths(const SurfaceScene& scene, const Camera& camera, const Pa
     return picture;
 }
 
+int samplesWithin(const SurfaceScene& scene, const Camera& camera, const PathOptions& options,
+                  const TimeLimit& limit) {
+    constexpr int fewest = 2, step = 8;
+    if (!limit || options.samples <= fewest) return options.samples;
+    PathOptions trial = options;
+    trial.samples = fewest;
+    trial.progress = {};
+    const std::size_t width = 3 * static_cast<std::size_t>(camera.width);
+    const PathRow dark{.radiance = std::vector<float>(width), .error = std::vector<float>(width)};
+    const double before = limit.secondsLeft();
+    tracePaths(scene, camera, trial, {.find = [&](int row) {
+                   return row % step == 0 ? std::nullopt : std::optional(dark);
+               }});
+    const double left = limit.secondsLeft(), perSample = (before - left) * step / fewest;
+    const double fit = perSample > 0 ? left / perSample : options.samples;
+    return static_cast<int>(std::clamp<double>(fit, fewest, options.samples));
+}
+
 PathEstimate tracePaths(const SurfaceScene& scene, const Point& origin, const Direction& direction,
                         const PathOptions& options) {
     SampleMean statistics;

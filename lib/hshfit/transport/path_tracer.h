@@ -1,5 +1,6 @@
 #pragma once
 
+#include <hshfit/time_limit.h>
 #include <hshfit/transport/surface_scene.h>
 
 #include <cstdint>
@@ -55,6 +56,11 @@ struct PathRows {
 /// count as 0. The picture does not depend on the number of threads.
 PathPicture tracePaths(const SurfaceScene& scene, const Camera& camera,
                        const PathOptions& options = {}, const PathRows& rows = {});
+
+/// As many paths through a pixel as fit into the time that is left, from 2 to `options.samples`, by
+/// the time that two of them take in every eighth row. All of them where there is no limit.
+int samplesWithin(const SurfaceScene& scene, const Camera& camera, const PathOptions& options,
+                  const TimeLimit& limit);
 
 /// Radiance along one ray: the mean of `samples` paths.
 struct PathEstimate {
