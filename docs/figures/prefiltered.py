@@ -4,9 +4,9 @@
 Four RGL files, four tables of MERL layout (DATA/../tools/merl_hybrid.py makes them in FOLDER),
 glossy and brushed metal, under four probes and two lamps. Runs `tradeoff --lighting prefiltered`
 and prints, as the table of docs/explanation/prefiltered.md, for each material and number of
-lobes: the error
-over all turns, the median and the worst of the probes; and of the sphere as it stands the relative
-L2 and FLIP, the median over the six lights.
+lobes the median and the largest: of the error over all turns, over the probes; of the relative L2
+and FLIP of the sphere as it stands, over the six lights. The last lines have the median of the
+materials' medians, and of all their largest the largest.
 """
 
 import json
@@ -38,8 +38,7 @@ def materials(data, folder):
 
 
 def line(name, key, found):
-    turned, worst, l2, flip = found
-    return f'| {name} | {key} | {turned:.3f} / {worst:.3f} | {l2:.3f} | {flip:.3f} |'
+    return f'| {name} | {key} |' + ''.join(f' {middle:.3f} / {most:.3f} |' for middle, most in found)
 
 
 def main():
@@ -47,7 +46,8 @@ def main():
     folder.mkdir(parents=True, exist_ok=True)
     lights = [str(data / 'env' / probe) for probe in PROBES] + LAMPS
     totals = {}
-    print('| material | lookups | all turns, median / worst probe | sphere, relative L2 | FLIP |')
+    print('| material | lookups | all turns, median / worst probe | '
+          'sphere, relative L2, median / worst light | FLIP, median / worst light |')
     print('|---|---|---|---|---|')
     for name, spec in materials(data, folder):
         words = [program, 'tradeoff', spec, '--lighting', 'prefiltered', '--json']
@@ -58,17 +58,15 @@ def main():
         for trade in answer['brdfs'][0]['trades']:
             rows.setdefault(trade['settings'], []).append(trade)
         for key, own in sorted(rows.items()):
-            turned = [row['turned_l2'] for row in own if row['light'] not in LAMPS]
-            found = (statistics.median(turned), max(turned),
-                     statistics.median(row['relative_l2'] for row in own),
-                     statistics.median(row['flip'] for row in own))
+            measures = [[row['turned_l2'] for row in own if row['light'] not in LAMPS],
+                        [row['relative_l2'] for row in own], [row['flip'] for row in own]]
+            found = [(statistics.median(values), max(values)) for values in measures]
             print(line(name, key, found), flush=True)
             totals.setdefault(key, []).append(found)
     for key, found in sorted(totals.items()):
-        turned, worst, l2, flip = zip(*found)
         print(line('median; of the worst the largest', key,
-                   (statistics.median(turned), max(worst), statistics.median(l2),
-                    statistics.median(flip))))
+                   [(statistics.median(middle for middle, _ in column),
+                     max(most for _, most in column)) for column in zip(*found)]))
 
 
 if __name__ == '__main__':

@@ -30,7 +30,9 @@ import { material as ofLibrary, materialNumber, materials } from 'hshfit-atlas';
 import { HshfitNodeMaterial as Atlas } from 'hshfit-atlas/webgpu';
 const one: HshfitMaterial = material({ tangents: true, axis: new Vector3(0, 0, 1), side: 2 });
 one.setEnvironment(studio).setEnvironment(environmentFromProbe(new LightProbe()));
-new Mesh(new SphereGeometry(), nodeMaterial({ axis: [0, 1, 0], environment: null }));
+new Mesh(new SphereGeometry(), nodeMaterial({ axis: [0, 1, 0], environment: null, normalMap: new DataTexture() }));
+const tinted = material({ color: 'red', aoMap: new DataTexture(), aoMapIntensity: 0.5 });
+tinted.normalScale.set(1, tinted.color.r);
 form().setEnvironment(null).setEnvironmentMap(new DataTexture());
 const bytes: number = facts.bytes;
 const two = ofLibrary({ materialIndex: materials[1], side: 2 });
@@ -42,6 +44,7 @@ console.log(bytes);
 const bad = [
   ["import { material } from 'hshfit-ward'; material({ tangents: 'yes' });", 'a wrong type'],
   ["import { material } from 'hshfit-ward'; material().setSurroundings(null);", 'no such function'],
+  ["import { material } from 'hshfit-ward'; material({ normalMap: 'file.png' });", 'no texture'],
   ["import { material } from 'hshfit-atlas'; material({ axis: [0, 1, 0] });", 'an option of other materials'],
   ["import { material } from 'hshfit-atlas'; material().materialIndex = null;", 'no material'],
   ["import { nothing } from 'hshfit-ward/webgpu'; console.log(nothing);", 'no such export'],

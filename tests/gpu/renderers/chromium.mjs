@@ -23,7 +23,7 @@ export async function trial({ title, name: engine, target, scripts, draw, more =
         const expected = await scene.references(hshfit, folder, name, kind, size);
         const row = [];
         for (const given of target ? scene.given : ['glTF']) {
-          const words = { ...scene.forPage(kind), name, side: samples * size, glb: given === 'glTF' ? `/files/${name}/${name}.glb` : null };
+          const words = { ...scene.forPage(kind), driver, name, side: samples * size, glb: given === 'glTF' ? `/files/${name}/${name}.glb` : null };
           // A fresh browser for each: engines keep their contexts.
           const text = await withBrowser(
             driver,

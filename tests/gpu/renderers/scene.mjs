@@ -1,7 +1,7 @@
 // The scene of all trials: a unit sphere with its parallels about the axis that is up, one camera in
 // perspective, one material, one light at a time; and its picture by `hshfit render`.
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdirSync, readFileSync } from 'node:fs';
+import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { expect } from '../browser/browser.mjs';
@@ -42,7 +42,9 @@ const fromAngles = (elevation, azimuth) => [
 export const upright = ([x, y, z]) => [x, z, -y];
 export const towardsLight = fromAngles(light.elevation, light.azimuth);
 // The sphere's outline is 0.96 of the picture's half edge (pictures/sphere.h).
-const slope = 0.96 * Math.tan((view.angle / 2) * radians);
+const outline = 0.96;
+export const reach = 1 / outline; // half a picture by parallel lines of sight
+const slope = outline * Math.tan((view.angle / 2) * radians);
 export const distance = Math.hypot(1, 1 / slope);
 export const eye = fromAngles(90 - view.theta, view.azimuth).map((x) => distance * x);
 
@@ -82,9 +84,58 @@ export const forPage = (kind) => ({
   turn,
 });
 
+// Waves of a normal map over the unit sphere: its normal in the frame along u, along v and outwards, u
+// once around the axis that is up and v from its lower pole to its upper one, 0 to 1.
+function bumpAt(u, v) {
+  const steep = 0.3 * Math.sin(Math.PI * v) ** 2;
+  const n = [-steep * Math.sin(2 * Math.PI * 14 * u), -steep * Math.sin(2 * Math.PI * 9 * v), 1];
+  return n.map((x) => x / Math.hypot(...n));
+}
+
+// As a texture of bytes, row 0 at v = 0.
+export function bumpTexels() {
+  const [width, height] = [2048, 1024];
+  const texels = Buffer.alloc(4 * width * height, 255);
+  for (let row = 0; row < height; ++row)
+    for (let column = 0; column < width; ++column)
+      bumpAt((column + 0.5) / width, (row + 0.5) / height).forEach((x, k) => {
+        texels[4 * (row * width + column) + k] = Math.round(127.5 * (x + 1));
+      });
+  return { width, height, texels: texels.toString('base64') };
+}
+
+// As a mesh, z up: the sphere of three.js' SphereGeometry with these normals at its corners.
+function writeBumps(path) {
+  const [around, down] = [512, 256];
+  const lines = [];
+  for (let row = 0; row <= down; ++row)
+    for (let column = 0; column <= around; ++column) {
+      const [u, v] = [column / around, 1 - row / down];
+      const [phi, theta] = [2 * Math.PI * u, Math.PI * (1 - v)];
+      const out = [-Math.cos(phi) * Math.sin(theta), -Math.sin(phi) * Math.sin(theta), Math.cos(theta)];
+      const along = [Math.sin(phi), -Math.cos(phi), 0];
+      const above = [Math.cos(phi) * Math.cos(theta), Math.sin(phi) * Math.cos(theta), Math.sin(theta)];
+      const [a, b, c] = bumpAt(u, v);
+      lines.push(`v ${out.map((x) => x.toFixed(7)).join(' ')}`);
+      lines.push(`vn ${out.map((x, k) => (a * along[k] + b * above[k] + c * x).toFixed(6)).join(' ')}`);
+    }
+  const corner = (row, column) => {
+    const k = row * (around + 1) + column + 1;
+    return `${k}//${k}`;
+  };
+  for (let row = 0; row < down; ++row)
+    for (let column = 0; column < around; ++column) {
+      const [a, b, c, d] = [corner(row, column), corner(row, column + 1), corner(row + 1, column + 1), corner(row + 1, column)];
+      if (row > 0) lines.push(`f ${a} ${d} ${b}`);
+      if (row < down - 1) lines.push(`f ${b} ${d} ${c}`);
+    }
+  writeFileSync(path, `${lines.join('\n')}\n`);
+}
+
 const lights = {
   direct: `directional:elevation=${light.elevation},azimuth=${light.azimuth},irradiance=${light.irradiance}`,
   environment: `${picture}:turn=${turn}`,
+  bumps: `${picture}:turn=${turn}`,
 };
 
 // `hshfit render` of a BRDF, kept in `folder` under a name.
@@ -94,7 +145,9 @@ async function rendered(hshfit, folder, name, spec, kind, size) {
   if (!existsSync(path)) {
     const words = ['--light', lights[kind], '--by', 'integration', '--view', `${view.theta},${view.azimuth}`];
     const error = kind === 'direct' ? [] : ['--error', '2%'];
-    run(hshfit, 'render', spec, ...words, '--field-of-view', `${view.angle}`, '--size', `${size}`, '--samples', '3', ...error, '-o', path);
+    const shape = kind === 'bumps' ? ['--mesh', join(folder, 'bumps.obj'), '--up', 'z'] : ['--field-of-view', `${view.angle}`];
+    if (kind === 'bumps' && !existsSync(shape[1])) writeBumps(shape[1]);
+    run(hshfit, 'render', spec, ...words, ...shape, '--size', `${size}`, '--samples', '3', ...error, '-o', path);
   }
   return readExr(path);
 }
@@ -130,13 +183,17 @@ export function judged(engine, { name, kind, given }, expected, found) {
   return { expected: expected.source, found: seen };
 }
 
-// Answers of the local web server that withBrowser() plays: /npm/ and /files/.
+const blank = `<!DOCTYPE html><title>trial</title><canvas id="c" width="64" height="64"></canvas>
+<script type="importmap">{"imports": {"three": "/three/build/three.module.js", "three/webgpu": "/three/build/three.webgpu.js",
+"three/tsl": "/three/build/three.tsl.js", "three/addons/": "/three/examples/jsm/"}}</script>`;
+
+// Answers of the local web server that withBrowser() plays: /npm/, /three/, /files/ and /shared/.
 export function server(folder) {
   const types = { js: 'text/javascript', mjs: 'text/javascript', wasm: 'application/wasm', html: 'text/html' };
   return (path) => {
-    if (path === '/') return { contentType: 'text/html', body: '<!DOCTYPE html><title>trial</title><canvas id="c" width="64" height="64"></canvas>' };
+    if (path === '/') return { contentType: 'text/html', body: blank };
     const [, place, ...rest] = path.split('/');
-    const roots = { npm: join(here, 'node_modules'), files: folder, shared };
+    const roots = { npm: join(here, 'node_modules'), three: join(here, '../node_modules/three'), files: folder, shared };
     if (!roots[place]) return null;
     try {
       const body = readFileSync(join(roots[place], ...rest));

@@ -23,7 +23,7 @@
 namespace hshfit::embedded {
 extern const std::string_view three_data, three_fragment, three_light, three_look_ups,
     three_map_setter, three_material, three_nodes, three_package, three_page, three_response,
-    three_surroundings, three_types, three_vertex;
+    three_surface, three_surroundings, three_types, three_vertex;
 extern const std::string_view viewer_harmonics;
 }  // namespace hshfit::embedded
 
@@ -183,6 +183,7 @@ data wordsOf(const ThreeInput& input, const ThreeOptions& options) {
     page.set("sines", slotsWhere(slots, [](int m) { return m < 0; }));
     setLookUps(options, input.prefix, page);
     page.set("lookUpScript", rendered(embedded::three_look_ups, page));
+    page.set("surfaceScript", rendered(embedded::three_surface, page));
     page.set("mapSetter", rendered(embedded::three_map_setter, page));
     return page;
 }

@@ -80,14 +80,17 @@ LookUpNode lookUpNode(const std::string& wgsl, const std::string& prefix) {
     const std::string table = "table: texture_2d<f32>, ",
                       light =
                           "cube: texture_cube<f32>, cubeSampler: sampler, cubeTurn: mat3x3<f32>, "
-                          "cubeLevels: f32, ";
-    // The engine's own number of levels, and its turn.
+                          "cubeLevels: f32, cubeIntensity: f32, even: vec3<f32>, ";
+    // The engine's own number of levels, its turn, and even light beside it.
     replaceAll(
-        fmt::format("{0}_cube, {0}_sampler, direction, {0}_level(roughness)", name),
-        "cube, cubeSampler, cubeTurn * direction, cubeLevels * roughness * (2.0 - roughness)",
+        fmt::format("textureSampleLevel({0}_cube, {0}_sampler, direction, {0}_level(roughness))",
+                    name),
+        "cubeIntensity * textureSampleLevel(cube, cubeSampler, cubeTurn * direction, "
+        "cubeLevels * roughness * (2.0 - roughness)) + vec4<f32>(even, 0.0)",
         text);
     replaceAll(name + "_table", "table", text);
-    addArguments(name + "_lookUp", light, "cube, cubeSampler, cubeTurn, cubeLevels, ", text);
+    addArguments(name + "_lookUp", light,
+                 "cube, cubeSampler, cubeTurn, cubeLevels, cubeIntensity, even, ", text);
     for (const char* part : {"_texel", "_at"}) addArguments(name + part, table, "table, ", text);
     addArguments(name, table + light, "", text);
     const std::size_t main = text.find("fn " + name + "(");
