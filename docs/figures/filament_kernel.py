@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """filament_kernel.py FOLDER [SIZE]: the kernels of the levels that Filament's cmgen prefilters.
 
-cmgen (Debian's libfilament-tools) filters pictures with one narrow spot to cubes of SIZE texels, 256
-if not given. Coefficients of each level in Legendre polynomials about the spot, over those of level
+cmgen (Debian's libfilament-tools) filters pictures with one narrow spot to cubes of SIZE texels,
+256 if not given. Coefficients of each level in Legendre polynomials about the spot, over those of level
 0, are those of the level's kernel, looked up with a filter. Prints the table of
 docs/explanation/prefiltered.md: for each level its roughness; for a spot in the middle of a face,
 between and at a corner the light that is left, and the largest difference of 32 coefficients from
@@ -149,8 +149,8 @@ def main():
             gap = numpy.max(abs(found / left - kernel_bands(roughness)))
             tried = numpy.linspace(max(.02, roughness - .1), min(1, roughness + .1), 201)
             nearest = min(tried, key=lambda r: distance(found / left, kernel_bands(r)))
-            print(f'| {name} | {level} | {roughness:.3f} | {left:.3f} | {gap:.3f} | {nearest:.3f} |',
-                  flush=True)
+            numbers = (f'{value:.3f}' for value in (roughness, left, gap, nearest))
+            print(f'| {name} | {level} |', ' | '.join(numbers), '|', flush=True)
 
 
 if __name__ == '__main__':

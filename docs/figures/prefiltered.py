@@ -38,7 +38,8 @@ def materials(data, folder):
 
 
 def line(name, key, found):
-    return f'| {name} | {key} |' + ''.join(f' {middle:.3f} / {most:.3f} |' for middle, most in found)
+    columns = ' | '.join(f'{middle:.3f} / {most:.3f}' for middle, most in found)
+    return f'| {name} | {key} | {columns} |'
 
 
 def main():

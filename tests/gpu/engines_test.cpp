@@ -12,6 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -92,22 +93,27 @@ TEST(EngineFiles, RefusalsSayWhatWouldBeRight) {
     }
 }
 
-/// Whether glslang takes a pixel shader of HLSL, or 77 where it is not installed.
-int compiles(const std::string& text) {
+/// The exit code of a compiler with `file` and an output after its options, or 77 where it is not
+/// installed.
+int compiled(const std::string& program, const std::string& options, const std::string& file,
+             const std::string& text) {
     const auto folder =
         std::filesystem::temp_directory_path() /
         ("hshfit-engines-" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()) +
          std::to_string(getpid()));
     std::filesystem::create_directories(folder);
-    const auto file = folder / "a.frag";
-    std::ofstream(file) << text;
-    const std::string line =
-        "command -v glslangValidator >/dev/null || exit 77; glslangValidator -D -e main -V -S frag "
-        "-o " +
-        (folder / "a.spv").string() + " " + file.string();
+    std::ofstream(folder / file) << text;
+    const std::string line = "command -v " + program + " >/dev/null || exit 77; " + program + " " +
+                             options + " -o " + (folder / "compiled").string() + " " +
+                             (folder / file).string();
     const int status = std::system(line.c_str());
     std::filesystem::remove_all(folder);
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+}
+
+/// Whether glslang takes a pixel shader of HLSL.
+int compiles(const std::string& text) {
+    return compiled("glslangValidator", "-D -e main -V -S frag", "a.frag", text);
 }
 
 /// The head and the main of an engine's editor around its file.
@@ -143,6 +149,31 @@ TEST(EngineFiles, HlslOfUnrealAndOfGraphsCompiles) {
         EXPECT_EQ(compiles(program(row, engineFile(row, sampled(row, Channels::rgb())), true)), 0)
             << row.suffix;
     }
+}
+
+TEST(EngineFiles, FilamentsCompilerTakesTheMaterial) {
+    const auto takes = [](const EngineMaterial& material) {
+        const auto row = std::ranges::find(engineFiles(), "filament", &EngineFile::target);
+        return compiled("matc", "-p mobile", "a.mat", engineFile(*row, material));
+    };
+    EngineMaterial material = constant();
+    material.snippet = "float hsh_eval(vec3 wo, vec3 wi) { return 0.3 * wo.z; }\n";
+    const int found = takes(material);
+    if (found == 77) GTEST_SKIP() << "matc is not installed (libfilament-tools)";
+    EXPECT_EQ(found, 0);
+    for (const bool along : {false, true}) {
+        material.lookUps = std::string("vec3 hsh_prefiltered(vec3 n, ") +
+                           (along ? "vec3 tangent, " : "") +
+                           "vec3 wo) { return HSH_PREFILTERED_TEXEL(1, 0).xyz * "
+                           "HSH_PREFILTERED_LIGHT(n, wo.z).xyz; }\n";
+        material.along = along;
+        material.lookUpTexels.assign(8, 0.5F);
+        material.lookUpWidth = 2;
+        material.lookUpHeight = 1;
+        EXPECT_EQ(takes(material), 0) << along;
+    }
+    material.snippet = "float hsh_eval(vec3 wo, vec3 wi) { return nothing; }\n";
+    EXPECT_NE(takes(material), 0);
 }
 
 }  // namespace

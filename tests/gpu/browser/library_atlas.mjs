@@ -1,12 +1,12 @@
 // library_atlas.mjs DRIVER PROGRAM LIBRARY LIGHT.hdr FOLDER: a sphere of each material of a library in
 // one draw call, by `library export --target three`, under a picture of light. Prints bytes, draw calls and the
 // processor time of a frame beside three's own MeshPhysicalMaterial in its place, and the differences
-// of the spheres from `hshfit render`, which needs seconds for each. FOLDER has the export, also for a second
+// of the spheres from `hshfit render`, which needs seconds for each. DRIVER webgpu: the node material. FOLDER has the export, also for a second
 // run, and library_atlas.png: above by three.js, below by `render`.
 import { execFileSync } from 'node:child_process';
 import { existsSync, mkdirSync, readdirSync, readFileSync, statSync } from 'node:fs';
 import { basename, join, normalize, resolve } from 'node:path';
-import { decoded, finish, here, readJson, withBrowser } from './browser.mjs';
+import { decoded, expect, finish, here, readJson, withBrowser } from './browser.mjs';
 import { difference, readExr, shownDifference, writeMosaic } from '../renderers/pictures.mjs';
 
 const [driver, program, library, light, folder] = process.argv.slice(2).map((word, k) => (k ? resolve(word) : word));
@@ -17,7 +17,8 @@ const side = 56,
   frames = 10;
 
 const blank = `<!DOCTYPE html><title>atlas</title><script type="importmap">{"imports": {
-  "three": "/three/build/three.module.js", "three/addons/": "/three/examples/jsm/"}}</script>`;
+  "three": "/three/build/three.module.js", "three/webgpu": "/three/build/three.webgpu.js",
+  "three/tsl": "/three/build/three.tsl.js", "three/addons/": "/three/examples/jsm/"}}</script>`;
 
 function files(path) {
   if (path === '/') return { contentType: 'text/html', body: blank };
@@ -29,12 +30,13 @@ function files(path) {
 }
 
 // In the page: spheres in a grid across parallel lines of sight, as floats.
-async function draw({ name, side, columns, elevation }) {
-  const three = await import('three');
+async function draw({ name, gpu, side, columns, elevation }) {
+  const three = await import(gpu ? 'three/webgpu' : 'three');
   const { HDRLoader } = await import('three/addons/loaders/HDRLoader.js');
-  const { material, materials } = await import(`/${name}_three.js`);
+  const { material, materials } = await import(`/${name}_three${gpu ? '_webgpu' : ''}.js`);
   const rows = Math.ceil(materials.length / columns);
-  const renderer = new three.WebGLRenderer();
+  const renderer = gpu ? new three.WebGPURenderer() : new three.WebGLRenderer();
+  if (gpu) await renderer.init();
   renderer.setSize(columns * side, rows * side, false);
   const scene = new three.Scene();
   scene.environment = await new HDRLoader().setDataType(three.FloatType).loadAsync('/light.hdr');
@@ -63,32 +65,44 @@ async function draw({ name, side, columns, elevation }) {
   camera.lookAt(0, 0, 0);
 
   const [width, height] = [columns * side, rows * side];
-  const target = new three.WebGLRenderTarget(width, height, { type: three.FloatType });
+  const target = new (gpu ? three.RenderTarget : three.WebGLRenderTarget)(width, height, { type: three.FloatType });
+  const read = async (across, up) => {
+    if (gpu) return renderer.readRenderTargetPixelsAsync(target, 0, 0, across, up);
+    const found = new Float32Array(4 * across * up);
+    renderer.readRenderTargetPixels(target, 0, 0, across, up, found);
+    return found;
+  };
   renderer.setRenderTarget(target);
   renderer.render(scene, camera);
   renderer.render(scene, camera); // the first prefilters the light, too
-  const pixels = new Float32Array(4 * width * height);
-  renderer.readRenderTargetPixels(target, 0, 0, width, height, pixels);
-  renderer.setRenderTarget(null);
+  const { render } = renderer.info;
+  const calls = { calls: gpu ? render.drawCalls : render.calls, triangles: render.triangles };
+  const found = await read(width, height);
+  // Rows of WebGPU come from above, and are padded.
+  const pixels = new Float32Array(4 * width * height),
+    row = gpu ? Math.ceil((16 * width) / 256) * 64 : 4 * width;
+  for (let y = 0; y < height; ++y)
+    pixels.set(found.subarray(y * row, y * row + 4 * width), 4 * width * (gpu ? height - 1 - y : y));
 
-  const gl = renderer.getContext(),
-    sky = scene.environment,
+  if (!gpu) renderer.setRenderTarget(null);
+  const sky = scene.environment,
+    gl = gpu ? null : renderer.getContext(),
     surfaces = {
       library: mesh.material,
-      MeshPhysicalMaterial: new three.MeshPhysicalMaterial({ roughness: 0.4, metalness: 1 }),
-      MeshBasicMaterial: new three.MeshBasicMaterial(),
+      MeshPhysicalMaterial: new three[gpu ? 'MeshPhysicalNodeMaterial' : 'MeshPhysicalMaterial']({ roughness: 0.4, metalness: 1 }),
+      MeshBasicMaterial: new three[gpu ? 'MeshBasicNodeMaterial' : 'MeshBasicMaterial'](),
     };
   // Draws under the environment, a lamp or both, for as many frames.
-  window.drawFrames = ({ surface, environment, lit, frames }) => {
+  window.drawFrames = async ({ surface, environment, lit, frames }) => {
     mesh.material = surfaces[surface];
     scene.environment = environment ? sky : null;
     lamp.visible = lit;
     for (let k = 0; k < frames; ++k) {
       renderer.render(scene, camera);
-      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+      if (gpu) await read(1, 1);
+      else gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
     }
   };
-  const calls = { calls: renderer.info.render.calls, triangles: renderer.info.render.triangles };
   const bytes = new Uint8Array(pixels.buffer);
   let text = '';
   for (let k = 0; k < bytes.length; k += 8192) text += String.fromCharCode(...bytes.subarray(k, k + 8192));
@@ -146,7 +160,7 @@ await finish(async () => {
     execFileSync(program, ['library', 'export', library, '--target', 'three', '-o', folder, '--quiet']);
   const drawn = await withBrowser(driver, async (page) => {
     await page.goto('http://localhost/');
-    const answer = await page.evaluate(draw, { name, side, columns, elevation });
+    const answer = await page.evaluate(draw, { name, gpu: driver === 'webgpu', side, columns, elevation });
     for (const surface of ['library', 'MeshPhysicalMaterial', 'MeshBasicMaterial']) {
       for (const [light, environment, lit] of [['the environment', true, false], ['a lamp', false, true], ['both', true, true]]) {
         const job = { surface, environment, lit };
@@ -189,4 +203,5 @@ await finish(async () => {
       `largest: ${worst.join(', ')}`);
   }
   writeMosaic(join(folder, 'library_atlas.png'), tiles, columns);
+  expect(found[Math.floor(found.length / 2)].shown < 0.03, 'the spheres differ');
 });

@@ -2,6 +2,7 @@
 blender -b --factory-startup -P blender.py -- JSON, with the words of the scene in a file."""
 import json
 import math
+import struct
 import sys
 
 import bpy
@@ -18,6 +19,39 @@ for thing in scene.objects:
     if thing.type == "MESH":
         for polygon in thing.data.polygons:
             polygon.use_smooth = True
+
+
+
+def anisotropy(path):
+    """Strength and rotation of KHR_materials_anisotropy, which the importer leaves out."""
+    data = open(path, "rb").read()
+    text = data[20:20 + struct.unpack("<I", data[12:16])[0]]
+    extensions = json.loads(text)["materials"][0].get("extensions", {})
+    found = extensions.get("KHR_materials_anisotropy", {})
+    return found.get("anisotropyStrength", 0), found.get("anisotropyRotation", 0)
+
+
+def brush(material, strength, rotation):
+    """The Principled BSDF with glTF's two roughnesses: alpha + (1 - alpha) strength^2 along the
+    tangent, turned by the rotation, and alpha across it; Principled's are r^2 / aspect and r^2 aspect,
+    with aspect^2 = 1 - 0.9 anisotropic. The tangent runs along the parallels."""
+    tree = material.node_tree
+    shader = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
+    across = shader.inputs["Roughness"].default_value ** 2
+    along = across + (1 - across) * strength ** 2
+    shader.inputs["Roughness"].default_value = (along * across) ** 0.25
+    shader.inputs["Anisotropic"].default_value = min(1, (1 - across / along) / 0.9)
+    shader.inputs["Anisotropic Rotation"].default_value = rotation / (2 * math.pi) % 1
+    tangent = tree.nodes.new("ShaderNodeTangent")
+    tangent.direction_type, tangent.axis = "RADIAL", "Z"
+    tree.links.new(tangent.outputs["Tangent"], shader.inputs["Tangent"])
+
+
+strength, rotation = anisotropy(words["glb"])
+if strength > 0:
+    for thing in scene.objects:
+        if thing.type == "MESH":
+            brush(thing.active_material, strength, rotation)
 
 camera = bpy.data.objects.new("eye", bpy.data.cameras.new("eye"))
 camera.data.angle = math.radians(words["angle"])

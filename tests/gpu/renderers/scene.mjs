@@ -104,8 +104,8 @@ export function bumpTexels() {
   return { width, height, texels: texels.toString('base64') };
 }
 
-// As a mesh, z up: the sphere of three.js' SphereGeometry with these normals at its corners.
-function writeBumps(path) {
+// A unit sphere as a mesh, z up, as three.js' SphereGeometry has it; its normals in that frame.
+export function writeBall(path, normalAt = () => [0, 0, 1]) {
   const [around, down] = [512, 256];
   const lines = [];
   for (let row = 0; row <= down; ++row)
@@ -115,13 +115,13 @@ function writeBumps(path) {
       const out = [-Math.cos(phi) * Math.sin(theta), -Math.sin(phi) * Math.sin(theta), Math.cos(theta)];
       const along = [Math.sin(phi), -Math.cos(phi), 0];
       const above = [Math.cos(phi) * Math.cos(theta), Math.sin(phi) * Math.cos(theta), Math.sin(theta)];
-      const [a, b, c] = bumpAt(u, v);
-      lines.push(`v ${out.map((x) => x.toFixed(7)).join(' ')}`);
+      const [a, b, c] = normalAt(u, v);
+      lines.push(`v ${out.map((x) => x.toFixed(7)).join(' ')}`, `vt ${u} ${v}`);
       lines.push(`vn ${out.map((x, k) => (a * along[k] + b * above[k] + c * x).toFixed(6)).join(' ')}`);
     }
   const corner = (row, column) => {
     const k = row * (around + 1) + column + 1;
-    return `${k}//${k}`;
+    return `${k}/${k}/${k}`;
   };
   for (let row = 0; row < down; ++row)
     for (let column = 0; column < around; ++column) {
@@ -146,7 +146,7 @@ async function rendered(hshfit, folder, name, spec, kind, size) {
     const words = ['--light', lights[kind], '--by', 'integration', '--view', `${view.theta},${view.azimuth}`];
     const error = kind === 'direct' ? [] : ['--error', '2%'];
     const shape = kind === 'bumps' ? ['--mesh', join(folder, 'bumps.obj'), '--up', 'z'] : ['--field-of-view', `${view.angle}`];
-    if (kind === 'bumps' && !existsSync(shape[1])) writeBumps(shape[1]);
+    if (kind === 'bumps' && !existsSync(shape[1])) writeBall(shape[1], bumpAt);
     run(hshfit, 'render', spec, ...words, ...shape, '--size', `${size}`, '--samples', '3', ...error, '-o', path);
   }
   return readExr(path);

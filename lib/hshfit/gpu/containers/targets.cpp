@@ -23,6 +23,7 @@ struct Renderer {
 const Renderer renderers[] = {
     {"babylon", "Babylon.js: a material, and data of one's own", {"bin", "glsl-es", "wgsl"}, true},
     {"playcanvas", "PlayCanvas: a material, and data of one's own", {"bin", "glsl-es"}, true},
+    {"filament", "Filament: a material for its compiler", {"glsl-es"}, true},
     {"godot", "Godot 4: a shader, a texture array or a strip", {"dds", "exr", "glsl-es"}, true},
     {"godot3", "Godot 3: a shader", {"glsl-es"}, true},
     {"unity", "Unity: a shader, a function for graphs, data", {"bin", "hlsl"}, true},

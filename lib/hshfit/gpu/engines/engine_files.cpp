@@ -14,8 +14,8 @@
 #include <map>
 
 namespace hshfit::embedded {
-extern const std::string_view engine_babylon, engine_playcanvas, engine_godot, engine_unity,
-    engine_unity_graph, engine_unreal;
+extern const std::string_view engine_babylon, engine_playcanvas, engine_filament, engine_godot,
+    engine_unity, engine_unity_graph, engine_unreal;
 }  // namespace hshfit::embedded
 
 namespace hshfit::gpu::inline engines {
@@ -26,6 +26,7 @@ using kainjow::mustache::data;
 constexpr EngineFile table[] = {
     {"babylon", "_babylon.js", Language::glslEs, "babylon", true},
     {"playcanvas", "_playcanvas.js", Language::glslEs, "playcanvas", true},
+    {"filament", ".mat", Language::glslEs, "filament", false, false},
     {"godot", ".gdshader", Language::glslEs},
     {"godot3", "_godot3.shader", Language::glslEs, {}, false, false},
     {"unity", ".shader", Language::hlsl, "unity"},
@@ -38,7 +39,7 @@ std::string_view templateOf(const EngineFile& row) {
         {"_babylon.js", embedded::engine_babylon}, {"_playcanvas.js", embedded::engine_playcanvas},
         {".gdshader", embedded::engine_godot},     {"_godot3.shader", embedded::engine_godot},
         {".shader", embedded::engine_unity},       {"_graph.hlsl", embedded::engine_unity_graph},
-        {"_unreal.ush", embedded::engine_unreal},
+        {"_unreal.ush", embedded::engine_unreal},  {".mat", embedded::engine_filament},
     };
     return texts.at(row.suffix);
 }
