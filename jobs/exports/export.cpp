@@ -323,6 +323,8 @@ void exportForm(const Representation& stored, const std::string& path, const std
 Targets targetsFor(const Representation& stored, const ExportOptions& options,
                    const Listener& listener) {
     Targets chosen = gpu::selectTargets(options.targets);
+    if (std::ranges::find(chosen, Target::Kind::mips, &Target::kind) != chosen.end())
+        throw UsageError("the target mips takes a map of materials, which svbrdf writes");
     if (transmissionSide(stored.head.source).empty()) return chosen;
     std::erase_if(chosen, [&](const Target* target) {
         if (target->kind != Target::Kind::viewer && target->kind != Target::Kind::module)

@@ -92,6 +92,10 @@ private:
                 return writeShader(target.name);
             case Target::Kind::viewer:
                 return writeViewer();
+            case Target::Kind::mips:
+                for (const std::string& line : map_->writeMips(result_.name, files_))
+                    listener_.say(line);
+                return;
             case Target::Kind::renderer:
             case Target::Kind::material:
             case Target::Kind::module:

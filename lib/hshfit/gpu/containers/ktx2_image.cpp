@@ -14,6 +14,34 @@ namespace {
 constexpr std::uint32_t zstdScheme = 2;
 constexpr std::size_t headerBytes = 80, levelIndexBytes = 24;
 
+constexpr std::size_t blockSize = 16;  // bytes
+
+/// Samples are the two channels of BC5 or the colour of BC7.
+std::string blockDescriptor(Blocks blocks) {
+    const bool two = blocks == Blocks::bc5;
+    const std::uint32_t samples = two ? 2 : 1, blockBytes = 24 + samples * 16;
+    constexpr std::uint8_t modelBc5 = 132, modelBc7 = 134;
+    std::string out;
+    put(out, std::uint32_t{4 + blockBytes});
+    put(out, std::uint32_t{0});  // Khronos, basic descriptor
+    put(out, std::uint16_t{2});  // KDF 1.3
+    put(out, static_cast<std::uint16_t>(blockBytes));
+    // primaries unspecified, transfer linear, alpha straight
+    for (const int octet : {int{two ? modelBc5 : modelBc7}, 0, 1, 0})
+        put(out, static_cast<std::uint8_t>(octet));
+    put(out, std::uint32_t{0x0303});  // texel block 4 x 4 x 1 x 1
+    put(out, std::uint64_t{blockSize});
+    for (std::uint32_t i = 0; i < samples; ++i) {
+        put(out, static_cast<std::uint16_t>(i * 64));
+        put(out, static_cast<std::uint8_t>(two ? 63 : 127));
+        put(out, static_cast<std::uint8_t>(i));
+        put(out, std::uint32_t{0});
+        put(out, std::uint32_t{0});
+        put(out, std::uint32_t{0xffffffff});
+    }
+    return out;
+}
+
 std::string dataFormatDescriptor(Number number) {
     const PixelFormat& format = formatOf(number);
     const auto bytes = static_cast<std::uint32_t>(numberBytes(number));
@@ -60,12 +88,19 @@ std::size_t aligned(std::size_t offset, std::size_t alignment) {
 }  // namespace
 
 std::size_t ktx2Alignment(const Ktx2Image& image) {
+    if (image.blocks != Blocks::none) return blockSize;
     // the least common multiple of 4 and the bytes of a texel, which is a power of two
     return image.zstd ? 1 : std::max<std::size_t>(4, numberBytes(image.number) * 4);
 }
 
 std::string ktx2Head(const Ktx2Image& image) {
-    const std::string descriptor = dataFormatDescriptor(image.number);
+    const bool texels = image.blocks == Blocks::none;
+    constexpr std::size_t vulkanBc5 = 141, vulkanBc7 = 145;
+    const std::size_t vulkan = texels ? std::size_t{formatOf(image.number).vulkan}
+                               : image.blocks == Blocks::bc5 ? vulkanBc5
+                                                             : vulkanBc7;
+    const std::string descriptor =
+        texels ? dataFormatDescriptor(image.number) : blockDescriptor(image.blocks);
     const std::string pairs = keyValueData(image);
     const std::size_t descriptorOffset = headerBytes + image.levels.size() * levelIndexBytes;
     const std::size_t pairsOffset = descriptorOffset + descriptor.size();
@@ -73,10 +108,9 @@ std::string ktx2Head(const Ktx2Image& image) {
     const std::size_t dataOffset = aligned(pairsOffset + pairs.size(), alignment);
     std::string head(ktx2Magic);
     for (const std::size_t word :
-         {std::size_t{formatOf(image.number).vulkan}, numberBytes(image.number), image.width,
-          image.height, std::size_t{0}, image.layers, image.faces, image.levels.size(),
-          std::size_t{image.zstd ? zstdScheme : 0}, descriptorOffset, descriptor.size(),
-          pairsOffset, pairs.size()}) {
+         {vulkan, texels ? numberBytes(image.number) : 1, image.width, image.height, std::size_t{0},
+          image.layers, image.faces, image.levels.size(), std::size_t{image.zstd ? zstdScheme : 0},
+          descriptorOffset, descriptor.size(), pairsOffset, pairs.size()}) {
         put(head, static_cast<std::uint32_t>(word));
     }
     for (const std::size_t word : {std::size_t{0}, std::size_t{0}}) put(head, std::uint64_t{word});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <hshfit/gpu/containers/block_texels.h>
 #include <hshfit/gpu/texels.h>
 
 #include <cstddef>
@@ -14,6 +15,7 @@ namespace hshfit::gpu::inline containers {
 /// 1.3): RGBA, two-dimensional, an array, or a cube map with levels.
 struct Ktx2Image {
     Number number = Number::float16;
+    Blocks blocks = Blocks::none;  ///< compressed texels, in place of numbers
     std::size_t width = 1, height = 1;
     std::size_t layers = 0;  ///< 0: no array
     std::size_t faces = 1;   ///< 6: a cube map, +x -x +y -y +z -z
@@ -32,7 +34,8 @@ struct Ktx2Image {
 std::string ktx2Head(const Ktx2Image& image);
 std::size_t ktx2Alignment(const Ktx2Image& image);
 
-/// A file of uncompressed levels, the largest first: [layer][face][row][column][RGBA].
+/// A file of levels without Zstandard, the largest first: [layer][face][row][column][RGBA], or
+/// blocks in place of texels.
 std::string ktx2File(Ktx2Image image, std::span<const std::vector<std::byte>> levels);
 
 }  // namespace hshfit::gpu::inline containers

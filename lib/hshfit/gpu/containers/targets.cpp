@@ -75,6 +75,10 @@ std::vector<Target> makeTargets() {
                     "usd",
                     "a .usda of OpenUSD: UsdPreviewSurface, fitted, and the .mtlx by reference",
                     {"materialx"}});
+    rows.push_back({Target::Kind::mips,
+                    "mips",
+                    "of a map of normals: mips of normal, roughness and anisotropy, BC5 and BC7",
+                    {}});
     return rows;
 }
 
@@ -89,8 +93,8 @@ const Target& find(std::string_view name) {
 }  // namespace
 
 std::string_view kindName(Target::Kind kind) {
-    constexpr std::array<std::string_view, 7> names = {"container", "shader", "viewer", "renderer",
-                                                       "material",  "module", "binary"};
+    constexpr std::array<std::string_view, 8> names = {"container", "shader", "viewer", "renderer",
+                                                       "material",  "module", "binary", "mips"};
     return names[static_cast<std::size_t>(kind)];
 }
 
@@ -110,7 +114,8 @@ std::vector<const Target*> selectTargets(std::string_view names) {
         const std::string_view name = names.substr(first, last - first);
         if (name == "all") {
             for (const Target& target : targets())
-                if (target.kind != Target::Kind::material) want(target);
+                if (target.kind != Target::Kind::material && target.kind != Target::Kind::mips)
+                    want(target);
         } else {
             want(find(name));
         }
