@@ -65,7 +65,10 @@ def kind_of(schema):
     if "enum" in schema:
         return ", ".join(f"`{json.dumps(value)}`" for value in schema["enum"])
     if "$ref" in schema:
-        return f"as `{schema['$ref'].rsplit('/', 1)[-1].removesuffix('.schema.json')}`"
+        file, _, part = schema["$ref"].partition("#")
+        name = (part or file).rsplit("/", 1)[-1].removesuffix(".schema.json")
+        page = f"{file.removesuffix('.schema.json')}.md"
+        return f"as [{name}]({page})" if file else f"as `{name}`"
     for word in ("oneOf", "anyOf"):
         if word in schema:
             return " or ".join(dict.fromkeys(kind_of(each) for each in schema[word]))
