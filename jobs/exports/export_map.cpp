@@ -120,9 +120,7 @@ private:
         const auto& entry = *std::ranges::find(gpu::languages(), name, &gpu::LanguageEntry::name);
         const std::string text =
             map_->shader(entry.language, options_.prefix, options_.environmentOrder);
-        const bool es = entry.language == gpu::Language::glslEs;
-        const std::string file = fmt::format("{}_{}.{}{}", result_.name, options_.prefix,
-                                             es ? "es." : "", entry.extension);
+        const std::string file = gpu::shaderFileName(result_.name, entry, options_.prefix);
         files_.write(
             file, gpu::fileText(entry.language, text, std::filesystem::path(file).stem().string()));
         result_.texts.push_back({"shader", name, file});

@@ -172,13 +172,12 @@ Json writeLightingShaders(const LightingModel& model, const LightingTables& tabl
             listener.say(fmt::format("left out: lighting has no shaders in {}", language.name));
             continue;
         }
-        const bool es = language.language == gpu::Language::glslEs;
-        const std::string stem = fmt::format("_{}_{}", output.options.prefix, model.name);
+        const std::string stem = fmt::format("{}_{}", output.options.prefix, model.name);
         const Json file =
-            output.add(fmt::format("{}.{}{}", stem, es ? "es." : "", language.extension),
+            output.add(gpu::shaderFileName("", language, stem),
                        gpu::fileText(language.language,
                                      lighting::lightingShaderSource(language.language, shader),
-                                     output.name + stem));
+                                     output.name + "_" + stem));
         shaders.push_back({{"target", language.name}, {"path", file["path"]}});
     }
     return shaders;

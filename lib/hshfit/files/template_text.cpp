@@ -38,4 +38,13 @@ std::string filledPage(std::string_view text, const data& values) {
     return printableLines(filled(form, values));
 }
 
+void setPartials(std::initializer_list<std::pair<const char*, std::string_view>> parts,
+                 data& page) {
+    for (const auto& [name, text] : parts) {
+        std::string part(text);
+        if (part.ends_with('\n')) part.pop_back();
+        page.set(name, data(kainjow::mustache::partial([part] { return part; })));
+    }
+}
+
 }  // namespace hshfit::inline files

@@ -4,8 +4,10 @@
 
 #include <kainjow/mustache.hpp>
 
+#include <initializer_list>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace hshfit::inline files {
 
@@ -17,5 +19,10 @@ std::string filledText(std::string_view text, const kainjow::mustache::data& val
 /// A page or a script of gnuplot: the values are escaped for HTML unless the template says
 /// otherwise, and the lines are printable (printable.h).
 std::string filledPage(std::string_view text, const kainjow::mustache::data& values);
+
+/// Templates as the partials of those names. The last newline of each is dropped, because the line
+/// that names a partial has one of its own.
+void setPartials(std::initializer_list<std::pair<const char*, std::string_view>> parts,
+                 kainjow::mustache::data& page);
 
 }  // namespace hshfit::inline files

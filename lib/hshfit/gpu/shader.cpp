@@ -3,16 +3,15 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
 #include <hshfit/files/template_text.h>
+#include <hshfit/gpu/language_words.h>
 #include <hshfit/gpu/shader_data.h>
 #include <hshfit/gpu/shader_text.h>
 #include <hshfit/gpu/slang.h>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
 namespace hshfit::embedded {
 extern const std::string_view shader_basis, shader_clamp, shader_ends, shader_eval, shader_header,
@@ -25,7 +24,6 @@ namespace hshfit::gpu {
 namespace {
 
 using kainjow::mustache::data;
-using kainjow::mustache::partial;
 
 constexpr std::array table{
     LanguageEntry{Language::glslEs, "glsl-es", "glsl", "GLSL ES 3.00: WebGL2, OpenGL ES 3"},
@@ -39,83 +37,6 @@ constexpr std::array table{
 };
 
 constexpr int maxEnvironmentOrder = 16;
-
-/// The names in a language of constructs that the templates share.
-struct Words {
-    std::string let, let2, let3, let4, var;  ///< begin a declaration
-    std::string real, vec2, vec3, vec4;      ///< types, which also construct
-    std::string dot = "dot";
-    std::string environment = "env";  ///< the array of environment coefficients
-    std::string light = "light";      ///< the same in the world
-    bool macros = true;               ///< texels are looked up by macros, not functions
-    bool flat = false;                ///< a spectral environment is an array of numbers
-    std::string_view text = {};       ///< the template
-};
-
-Words wordsOf(Language language, const std::string& prefix) {
-    Words glsl{.let = "float",
-               .let2 = "vec2",
-               .let3 = "vec3",
-               .let4 = "vec4",
-               .var = "float",
-               .real = "float",
-               .vec2 = "vec2",
-               .vec3 = "vec3",
-               .vec4 = "vec4"};
-    Words hlsl{.let = "float",
-               .let2 = "float2",
-               .let3 = "float3",
-               .let4 = "float4",
-               .var = "float",
-               .real = "float",
-               .vec2 = "float2",
-               .vec3 = "float3",
-               .vec4 = "float4"};
-    switch (language) {
-        case Language::glslEs:
-            glsl.text = embedded::shader_glsl_es;
-            return glsl;
-        case Language::glsl:
-            glsl.text = embedded::shader_glsl;
-            return glsl;
-        case Language::hlsl:
-        case Language::slang:
-            hlsl.text = embedded::shader_hlsl;
-            return hlsl;
-        case Language::metal:
-            hlsl.text = embedded::shader_metal;
-            hlsl.environment = "env.sh";
-            hlsl.light = "light.sh";
-            return hlsl;
-        case Language::wgsl:
-            return {.let = "let",
-                    .let2 = "let",
-                    .let3 = "let",
-                    .let4 = "let",
-                    .var = "var",
-                    .real = "f32",
-                    .vec2 = "vec2<f32>",
-                    .vec3 = "vec3<f32>",
-                    .vec4 = "vec4<f32>",
-                    .macros = false,
-                    .text = embedded::shader_wgsl};
-        case Language::osl:
-            break;
-    }
-    const std::string two = prefix + "_Two", four = prefix + "_Four";
-    return {.let = "float",
-            .let2 = two,
-            .let3 = "vector",
-            .let4 = four,
-            .var = "float",
-            .real = "float",
-            .vec2 = two,
-            .vec3 = "vector",
-            .vec4 = four,
-            .dot = prefix + "_dot",
-            .flat = true,
-            .text = embedded::shader_osl};
-}
 
 void checkOptions(const ShaderOptions& options) {
     checkPrefix(options.prefix);
@@ -157,45 +78,6 @@ void setMap(const OutgoingSet& set, data& page) {
 
 namespace {
 
-void setLanguageWords(const Words& words, const std::string& prefix, data& page) {
-    page.set("let", words.let);
-    page.set("let2", words.let2);
-    page.set("let3", words.let3);
-    page.set("real", words.real);
-    page.set("let4", words.let4);
-    page.set("var", words.var);
-    page.set("vec2", words.vec2);
-    page.set("vec3", words.vec3);
-    page.set("vec4", words.vec4);
-    page.set("env", words.environment);
-    page.set("light", words.light);
-    page.set("dot", words.dot);
-    std::string upper = prefix;
-    for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-    page.set("prefix", prefix);
-    page.set("PREFIX", upper);
-    page.set("texel", words.macros ? upper + "_TEXEL" : prefix + "_texel");
-    page.set("basisTexel", words.macros ? upper + "_BASIS_TEXEL" : prefix + "_basisTexel");
-}
-
-void setWords(const Words& words, const Payload& payload, const std::string& prefix, data& page) {
-    const bool grey = payload.head.channels.kind == Channels::Kind::grey;
-    const bool spectral = payload.head.channels.kind == Channels::Kind::spectral;
-    page.set("grey", grey);
-    page.set("colour", !grey && !spectral);
-    page.set("spectral", spectral);
-    page.set("coef4", payload.packing == Packing::coef4);
-    page.set("rgb", payload.packing == Packing::rgb);
-    const std::string values = prefix + "_Values", zero3 = words.vec3 + "(0.0, 0.0, 0.0)";
-    page.set("type", spectral ? values : grey ? words.real : words.vec3);
-    page.set("zero", grey ? "0.0" : zero3);
-    page.set("lightType", spectral ? values : words.vec3);
-    page.set("lightZero", zero3);
-    page.set("environmentType", !spectral ? words.vec3 : words.flat ? words.real : values);
-    page.set("letLight", spectral ? words.let : words.let3);
-    setLanguageWords(words, prefix, page);
-}
-
 void setHeader(const Payload& payload, int environmentOrder, data& page) {
     page.set("generator", commentText(payload.head.generator));
     page.set("source", sourceComment(payload.head.source));
@@ -203,8 +85,6 @@ void setHeader(const Payload& payload, int environmentOrder, data& page) {
     page.set("order", std::to_string(payload.head.order));
     page.set("functionCount", std::to_string(payload.slots.size()));
     page.set("condonShortley", payload.head.condonShortley);
-    page.set("channelCount", std::to_string(payload.head.channels.count()));
-    page.set("channelNames", fmt::format("{}", fmt::join(payload.head.channels.names(), " ")));
     page.set("packing", packingName(payload.packing));
     page.set("layers", std::to_string(payload.coefficients.layers));
     page.set("number", numberName(payload.coefficients.number));
@@ -221,26 +101,19 @@ void setCost(const std::string& name, const ShaderCost& cost, data& page) {
 
 }  // namespace
 
-void setPartials(data& page) {
-    const std::pair<const char*, std::string_view> parts[] = {
-        {"header", embedded::shader_header},
-        {"ends", embedded::shader_ends},
-        {"basisBody", embedded::shader_basis},
-        {"turnBody", embedded::shader_turn},
-        {"uvBody", embedded::shader_uv},
-        {"evalBody", embedded::shader_eval},
-        {"clampBody", embedded::shader_clamp},
-        {"shadeBody", embedded::shader_shade},
-        {"lightBody", embedded::shader_light},
-        {"worldBody", embedded::shader_shade_world},
-        {"glslFunctions", embedded::shader_glsl_functions},
-    };
-    for (const auto& [name, text] : parts) {
-        // The last newline is dropped, because the line that names a partial has one of its own.
-        std::string body(text);
-        if (body.ends_with('\n')) body.pop_back();
-        page.set(name, data(partial([body] { return body; })));
-    }
+void setSharedPartials(data& page) {
+    setPartials({{"header", embedded::shader_header},
+                 {"ends", embedded::shader_ends},
+                 {"basisBody", embedded::shader_basis},
+                 {"turnBody", embedded::shader_turn},
+                 {"uvBody", embedded::shader_uv},
+                 {"evalBody", embedded::shader_eval},
+                 {"clampBody", embedded::shader_clamp},
+                 {"shadeBody", embedded::shader_shade},
+                 {"lightBody", embedded::shader_light},
+                 {"worldBody", embedded::shader_shade_world},
+                 {"glslFunctions", embedded::shader_glsl_functions}},
+                page);
 }
 
 std::string rendered(std::string_view text, const data& page) {
@@ -261,22 +134,28 @@ std::string shaderFileName(const std::string& name, const LanguageEntry& languag
     return fmt::format("{}_{}.{}{}", name, prefix, es ? "es." : "", language.extension);
 }
 
-void setLanguageWords(Language language, const std::string& prefix, data& page) {
-    setLanguageWords(wordsOf(language, prefix), prefix, page);
-}
-
 void setWords(Language language, const Payload& payload, const std::string& prefix, data& page) {
-    setWords(wordsOf(language, prefix), payload, prefix, page);
+    setLanguageWords(language, prefix, page);
+    setChannelWords(payload.head.channels, page);
+    const bool spectral = payload.head.channels.kind == Channels::Kind::spectral;
+    const std::string values = prefix + "_Values", vector = wordOf(page, "vec3");
+    page.set("coef4", payload.packing == Packing::coef4);
+    page.set("rgb", payload.packing == Packing::rgb);
+    page.set("lightType", spectral ? values : vector);
+    page.set("lightZero", vector + "(0.0, 0.0, 0.0)");
+    page.set("environmentType", !spectral                   ? vector
+                                : language == Language::osl ? wordOf(page, "real")
+                                                            : values);
+    page.set("letLight", wordOf(page, spectral ? "let" : "let3"));
 }
 
 std::string shaderSource(Language language, const Payload& payload, const ShaderOptions& options) {
     checkOptions(options);
     checkPayload(language, payload);
-    const Words words = wordsOf(language, options.prefix);
     const auto basis = bases::make(payload.head.basis, payload.head.order,
                                    {.condonShortley = payload.head.condonShortley});
     data page;
-    setWords(words, payload, options.prefix, page);
+    setWords(language, payload, options.prefix, page);
     setHeader(payload, options.environmentOrder, page);
     setMap(payload.head.outgoing, page);
     ShaderCost eval, shade, world;
@@ -284,14 +163,18 @@ std::string shaderSource(Language language, const Payload& payload, const Shader
     setEvaluation(payload, page, eval);
     page.set("shade", options.environmentOrder > 0);
     if (options.environmentOrder > 0) {
-        setShading(payload, *basis, options.environmentOrder, words.flat, page, shade);
-        setFrameTurn(payload, options.environmentOrder, words.flat, page, world);
+        const bool flat = language == Language::osl;
+        setShading(payload, *basis, options.environmentOrder, flat, page, shade);
+        setFrameTurn(payload, options.environmentOrder, flat, page, world);
     }
     setCost("eval", eval, page);
     setCost("shade", shade, page);
     setCost("world", world, page);
-    setPartials(page);
-    return rendered(words.text, page);
+    setSharedPartials(page);
+    return rendered(
+        textOf(language, {embedded::shader_glsl_es, embedded::shader_glsl, embedded::shader_hlsl,
+                          embedded::shader_wgsl, embedded::shader_metal, embedded::shader_osl}),
+        page);
 }
 
 }  // namespace hshfit::gpu

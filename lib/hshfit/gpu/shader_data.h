@@ -26,16 +26,13 @@ struct Band {
 };
 Band bandOf(int slot);
 
-/// The names of types, declarations and lookups in a language, and the prefix.
-void setLanguageWords(Language language, const std::string& prefix, kainjow::mustache::data& data);
-
-/// The same with the types of a payload's values and of light, and whether it is grey or a colour.
+/// The words of a language (language_words.h) with those of a payload and its light.
 void setWords(Language language, const Payload& payload, const std::string& prefix,
               kainjow::mustache::data& data);
 /// The map of outgoing directions: "parabolic" or "elevations" with their scales, or "single".
 void setMap(const OutgoingSet& set, kainjow::mustache::data& data);
 /// The templates that snippets share, as partials: turnBody, basisBody, lightBody, worldBody, ….
-void setPartials(kainjow::mustache::data& data);
+void setSharedPartials(kainjow::mustache::data& data);
 /// A template with its data, without the gaps of sections that are left out.
 std::string rendered(std::string_view text, const kainjow::mustache::data& data);
 

@@ -153,10 +153,8 @@ void setFrameTurn(int environmentOrder, data& page) {
     payload.head.channels = Channels::rgb();
     ShaderCost cost;
     setFrameTurn(payload, environmentOrder, false, page, cost);
-    page.set("letLight", page.get("let3")->string_value());
-    std::string body(embedded::shader_shade_world);
-    if (body.ends_with('\n')) body.pop_back();
-    page.set("worldBody", data(kainjow::mustache::partial([body] { return body; })));
+    page.set("letLight", wordOf(page, "let3"));
+    setPartials({{"worldBody", embedded::shader_shade_world}}, page);
 }
 
 }  // namespace hshfit::gpu

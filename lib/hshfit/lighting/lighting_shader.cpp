@@ -3,6 +3,7 @@
 #include <hshfit/bases/basis.h>
 #include <hshfit/error.h>
 #include <hshfit/files/template_text.h>
+#include <hshfit/gpu/language_words.h>
 #include <hshfit/gpu/shader_data.h>
 #include <hshfit/gpu/shader_text.h>
 #include <hshfit/lighting/harmonics.h>
@@ -26,15 +27,9 @@ namespace {
 
 using gpu::Language;
 using kainjow::mustache::data;
-using kainjow::mustache::partial;
 
 constexpr std::array languages{Language::glslEs, Language::glsl, Language::hlsl, Language::slang,
                                Language::wgsl};
-
-/// Snippets of Slang are in HLSL too.
-bool isHlsl(Language language) {
-    return language == Language::hlsl || language == Language::slang;
-}
 
 /// A model's function, in the order of Kind, the section of the templates that has it, and its line
 /// of comment.
@@ -55,25 +50,20 @@ const FunctionRow& functionOf(const LightingShader& shader) {
 /// Declarations, whose order of type and name differs between the languages.
 void setDeclarations(Language language, const LightingShader& shader, data& page) {
     const bool wgsl = language == Language::wgsl;
-    const bool hlsl = isHlsl(language);
-    const std::string three = wgsl ? "vec3<f32>" : hlsl ? "float3" : "vec3";
-    const std::string four = wgsl ? "vec4<f32>" : hlsl ? "float4" : "vec4";
-    page.set("type", wgsl ? "fn" : "float");
-    page.set("type3", wgsl ? "fn" : three);
-    page.set("type4", wgsl ? "fn" : four);
-    page.set("arg", wgsl ? "" : "float ");
-    page.set("arg3", wgsl ? "" : three + " ");
-    page.set("argInt", wgsl ? "" : "int ");
-    page.set("is", wgsl ? ": f32" : "");
-    page.set("is3", wgsl ? ": vec3<f32>" : "");
-    page.set("isInt", wgsl ? ": i32" : "");
-    page.set("to", wgsl ? " -> f32" : "");
-    page.set("to3", wgsl ? " -> vec3<f32>" : "");
-    page.set("to4", wgsl ? " -> vec4<f32>" : "");
-    page.set("int", wgsl ? "i32" : "int");
-    page.set("varInt", wgsl ? "var" : "int");
-    page.set("var3", wgsl ? "var" : three);
-    page.set("atan2", wgsl || hlsl ? "atan2" : "atan");
+    const std::string three = gpu::wordOf(page, "vec3");
+    const std::pair<const char*, std::string> types[] = {
+        {"", "real"}, {"3", "vec3"}, {"4", "vec4"}, {"Int", "int"}};
+    for (const auto& [suffix, word] : types) {
+        const std::string type = gpu::wordOf(page, word);
+        const auto set = [&, end = suffix](const char* key, const std::string& inWgsl,
+                                           const std::string& others) {
+            page.set(std::string(key) + end, wgsl ? inWgsl : others);
+        };
+        set("type", "fn", type);
+        set("arg", "", type + " ");
+        set("is", ": " + type, "");
+        set("to", " -> " + type, "");
+    }
     const auto array = [&](const char* name, int count) {
         return wgsl ? fmt::format("{}: array<{}, {}>", name, three, count)
                     : fmt::format("{} {}[{}]", three, name, count);
@@ -155,26 +145,6 @@ void setLobes(const LightingShader& shader, data& page) {
                                   fmt::format("{}.0", shader.engine->levels - 1)));
 }
 
-void setPartials(data& page) {
-    const std::pair<const char*, std::string_view> parts[] = {
-        {"functions", embedded::lighting_functions},
-        {"rowBody", embedded::lighting_row},
-        {"axes", embedded::lighting_axes},
-        {"coefficientsBody", embedded::lighting_coefficients},
-        {"splitSumBody", embedded::lighting_split_sum},
-        {"edgeBody", embedded::lighting_edge},
-        {"ltcBody", embedded::lighting_ltc},
-        {"prefilteredBody", embedded::lighting_prefiltered},
-        {"levelBody", embedded::lighting_level},
-    };
-    for (const auto& [name, text] : parts) {
-        // The last newline is dropped, because the line that names a partial has one of its own.
-        std::string body(text);
-        if (body.ends_with('\n')) body.pop_back();
-        page.set(name, data(partial([body] { return body; })));
-    }
-}
-
 }  // namespace
 
 std::span<const Language> lightingLanguages() {
@@ -196,10 +166,6 @@ std::string lightingShaderSource(Language language, const LightingShader& shader
     const bool wgsl = language == Language::wgsl;
     page.set("texel", wgsl ? name + "_texel" : upper + "_TEXEL");
     page.set("cube", wgsl ? name + "_lookUp" : upper + "_CUBE");
-    page.set("glslEs", language == Language::glslEs);
-    page.set("glsl", language == Language::glsl);
-    page.set("hlsl", isHlsl(language));
-    page.set("wgsl", wgsl);
     for (const FunctionRow& row : functions) page.set(row.name, &row == &functionOf(shader));
     const bool prefiltered = shader.kind == LightingShader::Kind::prefiltered;
     page.set("withCube", prefiltered || shader.kind == LightingShader::Kind::splitSum);
@@ -219,8 +185,17 @@ std::string lightingShaderSource(Language language, const LightingShader& shader
         setTerms(shader, page);
         gpu::setFrameTurn(shader.order, page);
     }
-    setPartials(page);
-    return gpu::withoutGaps(filledText(embedded::lighting_snippet, page));
+    setPartials({{"functions", embedded::lighting_functions},
+                 {"rowBody", embedded::lighting_row},
+                 {"axes", embedded::lighting_axes},
+                 {"coefficientsBody", embedded::lighting_coefficients},
+                 {"splitSumBody", embedded::lighting_split_sum},
+                 {"edgeBody", embedded::lighting_edge},
+                 {"ltcBody", embedded::lighting_ltc},
+                 {"prefilteredBody", embedded::lighting_prefiltered},
+                 {"levelBody", embedded::lighting_level}},
+                page);
+    return gpu::rendered(embedded::lighting_snippet, page);
 }
 
 }  // namespace hshfit::lighting

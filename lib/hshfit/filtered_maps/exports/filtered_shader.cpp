@@ -1,8 +1,10 @@
 #include <hshfit/filtered_maps/exports/filtered_shader.h>
 
 #include <hshfit/error.h>
+#include <hshfit/files/template_text.h>
 #include <hshfit/filtered_maps/exports/internal/lobe_numbers.h>
 #include <hshfit/filtered_maps/exports/internal/shader_functions.h>
+#include <hshfit/gpu/language_words.h>
 #include <hshfit/gpu/shader_data.h>
 #include <hshfit/gpu/shader_text.h>
 #include <hshfit/material_maps/exports/map_text.h>
@@ -103,11 +105,10 @@ void setFunctions(Language language, data& page) {
     f.add("evalHead", "type", "eval", {uv, lod, wo, wi}, true);
     f.add("levelHead", "real", "level", {{"vec2", "dx"}, {"vec2", "dy"}});
     const bool wgsl = language == Language::wgsl;
-    const std::string prefix = page.get("prefix")->string_value();
+    const std::string prefix = gpu::wordOf(page, "prefix");
     page.set("letTexel", wgsl ? "let" : prefix + "_Texel");
     page.set("letFacets", wgsl ? "let" : prefix + "_Facets");
-    page.set("letValue", wgsl ? "let" : page.get("type")->string_value());
-    page.set("castReal", wgsl ? "f32" : language == Language::osl ? "(float)" : "float");
+    page.set("letValue", wgsl ? "let" : gpu::wordOf(page, "type"));
 }
 
 /// The parts that a lobe's text has of its own.
@@ -130,10 +131,11 @@ void setLobe(const LobeText& lobe, data& page) {
     page.set("indices", rows);
     page.set("reflectances", fmt::format("{}", fmt::join(reflectances, ", ")));
     page.set("smooth", !lobe.smooth.empty());
-    setPartial(page, "lobeAxes", lobe.axes);
-    setPartial(page, "lobeDensity", lobe.density);
-    setPartial(page, "lobeTerms", lobe.terms);
-    setPartial(page, "lobeSmooth", lobe.smooth);
+    setPartials({{"lobeAxes", lobe.axes},
+                 {"lobeDensity", lobe.density},
+                 {"lobeTerms", lobe.terms},
+                 {"lobeSmooth", lobe.smooth}},
+                page);
 }
 
 /// Lookups of the nodes around a place, and their blend.
@@ -181,7 +183,7 @@ void setNodes(const FilteredSidecar& map, const LobeNumbers& lobes, data& page) 
     page.set("mixed", fmt::format("{}", fmt::join(lanes, ", ")));
     // The nearest node, of two equally near ones the lower, as LobeTable::gaussians takes it; the
     // margin is that of half precision.
-    const std::string toInt = page.get("toInt")->string_value();
+    const std::string toInt = gpu::wordOf(page, "toInt");
     const auto nearest = [&](const char* place, std::size_t count) {
         return count == 1 ? std::string("0")
                           : fmt::format("{}(clamp(ceil(t.{} - 0.5001), 0.0, {}))", toInt, place,
@@ -206,10 +208,10 @@ void setMoments(const FilteredSidecar& map, const MapWords& words, data& page) {
     page.set("meanX", blended("a", "w"));
     page.set("meanY", blended("b", "x"));
     page.set("row", map.nodes.empty() ? "0.0" : blended("c", "w"));
-    page.set("column", map.nodes.size() < 2 ? "0.0"
-                                            : fmt::format("{}_mapTexel({}uv, {}, level).x",
-                                                          page.get("prefix")->string_value(),
-                                                          words.pass, momentLayers));
+    page.set("column", map.nodes.size() < 2
+                           ? "0.0"
+                           : fmt::format("{}_mapTexel({}uv, {}, level).x",
+                                         gpu::wordOf(page, "prefix"), words.pass, momentLayers));
 }
 
 /// The terms of the lobe in a channel, where `weight(k)` names a weight times D.
@@ -266,20 +268,19 @@ void setOutputs(const FilteredSidecar& map, const MapWords& words, data& page) {
     for (std::size_t k = 0; k < static_cast<std::size_t>(layout.weights); ++k) {
         data row;
         row.set("k", std::to_string(k));
-        row.set("density", map.form == "harmonics"
-                               ? fmt::format("max({}_sum({}uv, lod, h, {}), 0.0)",
-                                             page.get("prefix")->string_value(), words.pass,
-                                             k * evenSlots(layout.order))
-                               : fmt::format("f.density * {}", nameOf(weightNumber(k))));
+        row.set("density",
+                map.form == "harmonics"
+                    ? fmt::format("max({}_sum({}uv, lod, h, {}), 0.0)", gpu::wordOf(page, "prefix"),
+                                  words.pass, k * evenSlots(layout.order))
+                    : fmt::format("f.density * {}", nameOf(weightNumber(k))));
         weights.push_back(row);
     }
     page.set("outputs", outputs);
     page.set("albedos", albedos);
     page.set("weights", weights);
     const std::string list = fmt::format("{}", fmt::join(values, ", "));
-    page.set("value", values.size() == 1
-                          ? list
-                          : fmt::format("{}({})", page.get("vec3")->string_value(), list));
+    page.set("value",
+             values.size() == 1 ? list : fmt::format("{}({})", gpu::wordOf(page, "vec3"), list));
 }
 
 /// Layers that the sampler blends, and the number of lookups.
@@ -327,7 +328,6 @@ void setHeader(const FilteredSidecar& map, data& page) {
     page.set("order", std::to_string(map.layout.order));
     page.set("layers", std::to_string(map.layers()));
     page.set("number", gpu::numberName(map.number));
-    page.set("channelNames", fmt::format("{}", fmt::join(map.channels.names(), " ")));
     page.set("mapWidthText", std::to_string(map.levels.front().width));
     page.set("mapHeightText", std::to_string(map.levels.front().height));
 }
@@ -341,10 +341,9 @@ std::string filteredShader(Language language, const FilteredSidecar& map, const 
     checkLayers(language, "the texture of harmonics", map.harmonicLayers(),
                 "the form ellipse has none, and harmonics of a lower order have fewer");
     const LobeNumbers lobes = lobeNumbers(map);
-    gpu::Payload head;
-    head.head.channels = map.channels;
     data page;
-    gpu::setWords(language, head, options.prefix, page);
+    gpu::setLanguageWords(language, options.prefix, page);
+    gpu::setChannelWords(map.channels, page);
     const MapWords words = setMapTextures(language,
                                           {.levels = map.levels,
                                            .shared = &lobes.texels,
@@ -361,15 +360,14 @@ std::string filteredShader(Language language, const FilteredSidecar& map, const 
     setMoments(map, words, page);
     setOutputs(map, words, page);
     setLookups(map, lobes, page);
-    gpu::setPartials(page);
-    const std::pair<const char*, std::string_view> parts[] = {
-        {"header", embedded::filtered_header},
-        {"mapFunctions", embedded::filtered_functions},
-        {"texelFunctions", embedded::filtered_texel},
-        {"facetFunctions", embedded::filtered_facets},
-        {"harmonicFunctions", embedded::filtered_harmonics},
-        {"valueFunctions", embedded::filtered_value}};
-    for (const auto& [name, text] : parts) setPartial(page, name, text);
+    gpu::setSharedPartials(page);
+    setPartials({{"header", embedded::filtered_header},
+                 {"mapFunctions", embedded::filtered_functions},
+                 {"texelFunctions", embedded::filtered_texel},
+                 {"facetFunctions", embedded::filtered_facets},
+                 {"harmonicFunctions", embedded::filtered_harmonics},
+                 {"valueFunctions", embedded::filtered_value}},
+                page);
     return gpu::rendered(words.text, page);
 }
 

@@ -4,10 +4,10 @@
 #include <hshfit/files/template_text.h>
 #include <hshfit/gpu/forms/form_table.h>
 #include <hshfit/gpu/forms/internal/form_text.h>
+#include <hshfit/gpu/language_words.h>
 #include <hshfit/gpu/shader_text.h>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -22,37 +22,11 @@ namespace hshfit::gpu::inline forms {
 namespace {
 
 using kainjow::mustache::data;
-using kainjow::mustache::partial;
 
 constexpr std::array storages{std::pair{Storage::automatic, std::string_view("auto")},
                               std::pair{Storage::constants, std::string_view("constants")},
                               std::pair{Storage::block, std::string_view("block")},
                               std::pair{Storage::texture, std::string_view("texture")}};
-
-/// The words that forms need of a language beyond setLanguageWords: its template, a declaration of
-/// a whole number, a conversion to one, a declaration of a vector that changes, and a vector of
-/// whole numbers.
-struct FormLanguage {
-    std::string_view text, letInt, toInt, varVector, words3;
-};
-FormLanguage formLanguage(Language language) {
-    switch (language) {
-        case Language::glslEs:
-            return {embedded::form_glsl_es, "int", "int", "vec3", "uvec3"};
-        case Language::glsl:
-            return {embedded::form_glsl, "int", "int", "vec3", "uvec3"};
-        case Language::hlsl:
-        case Language::slang:
-            return {embedded::form_hlsl, "int", "int", "float3", "uint3"};
-        case Language::metal:
-            return {embedded::form_metal, "int", "int", "float3", "uint3"};
-        case Language::wgsl:
-            return {embedded::form_wgsl, "let", "i32", "var", "vec3<u32>"};
-        case Language::osl:
-            break;
-    }
-    return {embedded::form_osl, "int", "(int)", "vector", ""};
-}
 
 void checkLanguage(Language language, const FormPayload& payload, Storage storage) {
     if (language != Language::osl) return;
@@ -86,22 +60,6 @@ void setStorage(const FormPayload& payload, Storage storage, data& page) {
     page.set("bound", storage != Storage::constants);
 }
 
-void setChannels(const Channels& channels, const std::string& prefix, Language language,
-                 data& page) {
-    const bool grey = channels.kind == Channels::Kind::grey;
-    const bool spectral = channels.kind == Channels::Kind::spectral;
-    page.set("grey", grey);
-    page.set("colour", !grey && !spectral);
-    page.set("spectral", spectral);
-    page.set("channelCount", std::to_string(channels.count()));
-    page.set("channelNames", fmt::format("{}", fmt::join(channels.names(), " ")));
-    const std::string vector =
-        language == Language::wgsl ? "vec3<f32>" : std::string(formLanguage(language).varVector);
-    const std::string real = language == Language::wgsl ? "f32" : "float";
-    page.set("type", spectral ? prefix + "_Values" : grey ? real : vector);
-    page.set("zero", grey ? "0.0" : vector + "(0.0, 0.0, 0.0)");
-}
-
 void setHeader(const FormPayload& payload, data& page) {
     const Representation& form = payload.form;
     page.set("generator", commentText(form.head.generator));
@@ -119,53 +77,38 @@ void setHeader(const FormPayload& payload, data& page) {
     page.set("added", form.added.empty() ? data(false) : data(commentText(form.added)));
 }
 
-void setPartials(std::string_view body, data& page) {
-    const std::pair<const char*, std::string_view> parts[] = {
-        {"header", embedded::form_header},
-        {"sumsBody", embedded::form_sums},
-        {"evalBody", embedded::form_eval},
-        {"halfwayAxes", embedded::form_halfway_axes},
-        {"formBody", body},
-        {"boundedBody", embedded::form_bounded},
-        {"glslFunctions", embedded::form_glsl_functions},
-        {"basisBody", embedded::shader_basis},
-        {"ends", embedded::shader_ends},
-        {"turnBody", embedded::shader_turn},
-    };
-    for (const auto& [name, text] : parts) {
-        // The last newline is dropped, because the line that names a partial has one of its own.
-        std::string part(text);
-        if (part.ends_with('\n')) part.pop_back();
-        page.set(name, data(partial([part] { return part; })));
-    }
-}
-
 }  // namespace
 
 std::string formText(Language language, const FormPayload& payload, const std::string& prefix,
                      const FormBody& body) {
-    const FormLanguage words = formLanguage(language);
     data page;
     setLanguageWords(language, prefix, page);
-    page.set("letInt", std::string(words.letInt));
-    page.set("varInt", language == Language::wgsl ? "var" : "int");
-    page.set("toInt", std::string(words.toInt));
-    page.set("varVector", std::string(words.varVector));
-    page.set("words3", std::string(words.words3));
-    page.set("flat", language == Language::osl);
+    setChannelWords(body.channels, page);
     page.set("function", "eval");
     page.set("materials", false);
     page.set("table", false);
     setStorage(payload, body.storage, page);
-    setChannels(body.channels, prefix, language, page);
     setHeader(payload, page);
     ShaderCost cost;
     FormText text{payload, body.constants, page, cost};
     body.fill(text);
     page.set("evalFetches", std::to_string(cost.fetches));
     page.set("evalProducts", std::to_string(cost.products));
-    setPartials(body.body, page);
-    return withoutGaps(filledText(words.text, page));
+    setPartials({{"header", embedded::form_header},
+                 {"sumsBody", embedded::form_sums},
+                 {"evalBody", embedded::form_eval},
+                 {"halfwayAxes", embedded::form_halfway_axes},
+                 {"formBody", body.body},
+                 {"boundedBody", embedded::form_bounded},
+                 {"glslFunctions", embedded::form_glsl_functions},
+                 {"basisBody", embedded::shader_basis},
+                 {"ends", embedded::shader_ends},
+                 {"turnBody", embedded::shader_turn}},
+                page);
+    return rendered(
+        textOf(language, {embedded::form_glsl_es, embedded::form_glsl, embedded::form_hlsl,
+                          embedded::form_wgsl, embedded::form_metal, embedded::form_osl}),
+        page);
 }
 
 std::string_view storageName(Storage storage) {

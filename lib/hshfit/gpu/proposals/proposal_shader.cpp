@@ -1,6 +1,7 @@
 #include <hshfit/gpu/proposals/proposal_shader.h>
 
 #include <hshfit/files/template_text.h>
+#include <hshfit/gpu/language_words.h>
 #include <hshfit/gpu/shader_data.h>
 #include <hshfit/gpu/shader_text.h>
 
@@ -21,30 +22,6 @@ namespace hshfit::gpu::inline proposals {
 namespace {
 
 using kainjow::mustache::data;
-using kainjow::mustache::partial;
-
-/// The words of a language beyond setLanguageWords: its template, a declaration of a whole number,
-/// and a conversion to one.
-struct ProposalLanguage {
-    std::string_view text, letInt, toInt;
-};
-ProposalLanguage proposalLanguage(Language language) {
-    switch (language) {
-        case Language::glslEs:
-        case Language::glsl:
-            return {embedded::proposal_glsl, "int", "int"};
-        case Language::hlsl:
-        case Language::slang:
-            return {embedded::proposal_hlsl, "int", "int"};
-        case Language::metal:
-            return {embedded::proposal_metal, "int", "int"};
-        case Language::wgsl:
-            return {embedded::proposal_wgsl, "let", "i32"};
-        case Language::osl:
-            break;
-    }
-    return {embedded::proposal_osl, "int", "(int)"};
-}
 
 /// A lobe of an isotropic proposal takes two numbers of a row's one vector, of another one three of
 /// a vector of its own.
@@ -102,39 +79,31 @@ void setEfficiency(const std::vector<ProposalRow>& rows, data& page) {
     page.set("efficiency", list);
 }
 
-void setPartials(data& page) {
-    const std::pair<const char*, std::string_view> parts[] = {
-        {"comment", embedded::proposal_comment}, {"rowBody", embedded::proposal_row},
-        {"angleBody", embedded::proposal_angle}, {"ggxBody", embedded::proposal_ggx},
-        {"pdfBody", embedded::proposal_density}, {"sampleBody", embedded::proposal_sample},
-    };
-    for (const auto& [name, text] : parts) {
-        // The last newline is dropped, because the line that names a partial has one of its own.
-        std::string part(text);
-        if (part.ends_with('\n')) part.pop_back();
-        page.set(name, data(partial([part] { return part; })));
-    }
-}
-
 }  // namespace
 
 std::string proposalSource(Language language, const ProposalRecord& record,
                            const ProposalShaderOptions& options) {
     checkPrefix(options.prefix);
     checkProposal(record.proposal);
-    const ProposalLanguage words = proposalLanguage(language);
     data page;
     setLanguageWords(language, options.prefix, page);
-    page.set("letInt", std::string(words.letInt));
-    page.set("toInt", std::string(words.toInt));
     const bool osl = language == Language::osl;
     page.set("open", osl ? options.prefix + "_proposalRow(" : options.prefix + "_proposal[");
     page.set("close", osl ? ")" : "]");
     page.set("cosine", options.cosine);
     setTable(record.proposal, page);
     setEfficiency(record.rows, page);
-    setPartials(page);
-    return fmt::format("\n{}", withoutGaps(filledText(words.text, page)));
+    setPartials({{"comment", embedded::proposal_comment},
+                 {"rowBody", embedded::proposal_row},
+                 {"angleBody", embedded::proposal_angle},
+                 {"ggxBody", embedded::proposal_ggx},
+                 {"pdfBody", embedded::proposal_density},
+                 {"sampleBody", embedded::proposal_sample}},
+                page);
+    const std::string_view text = textOf(
+        language, {embedded::proposal_glsl, embedded::proposal_glsl, embedded::proposal_hlsl,
+                   embedded::proposal_wgsl, embedded::proposal_metal, embedded::proposal_osl});
+    return fmt::format("\n{}", rendered(text, page));
 }
 
 }  // namespace hshfit::gpu::inline proposals

@@ -2,6 +2,8 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
+#include <hshfit/files/template_text.h>
+#include <hshfit/gpu/language_words.h>
 #include <hshfit/gpu/shader_data.h>
 #include <hshfit/gpu/shader_text.h>
 #include <hshfit/material_maps/exports/internal/weighted_sums.h>
@@ -185,7 +187,6 @@ void setHeader(const MapSidecar& map, data& page) {
     page.set("order", std::to_string(map.order));
     page.set("functionCount", std::to_string(map.layout.slots.size()));
     page.set("condonShortley", false);
-    page.set("channelNames", fmt::format("{}", fmt::join(map.channels.names(), " ")));
     page.set("outgoing", map.layout.outgoing.spec());
     page.set("cosine", map.quantity == Quantity::brdfCosine);
 }
@@ -194,7 +195,7 @@ void setLight(Language language, const MapShaderOptions& options, data& page) {
     page.set("shade", options.environmentOrder > 0);
     const std::string count = std::to_string(options.environmentOrder * options.environmentOrder);
     page.set("environmentCount", count);
-    const std::string vector = page.get("vec3")->string_value();
+    const std::string vector = gpu::wordOf(page, "vec3");
     const auto declared = [&](const char* name) {
         return language == Language::metal ? fmt::format("{}_Environment {}", options.prefix, name)
                                            : fmt::format("{} {}[{}]", vector, name, count);
@@ -204,19 +205,18 @@ void setLight(Language language, const MapShaderOptions& options, data& page) {
     page.set("lightParameter", declared("light"));
 }
 
-void setMapPartials(Language language, data& page) {
-    gpu::setPartials(page);
-    const std::pair<const char*, std::string_view> parts[] = {
-        {"header", embedded::map_header},
-        {"nodeBody", embedded::map_node},
-        {"cornersBody", embedded::map_corners},
-        {"materialBody", embedded::map_material},
-        {"sumsBody", embedded::map_sums},
-        {"mapEval", embedded::map_eval},
-        {"mapShade", embedded::map_shade},
-        {"mapFunctions",
-         language == Language::wgsl ? embedded::map_functions_wgsl : embedded::map_functions}};
-    for (const auto& [name, text] : parts) setPartial(page, name, text);
+void setMapPartials(data& page) {
+    gpu::setSharedPartials(page);
+    const bool wgsl = page.get("wgsl")->is_true();
+    setPartials({{"header", embedded::map_header},
+                 {"nodeBody", embedded::map_node},
+                 {"cornersBody", embedded::map_corners},
+                 {"materialBody", embedded::map_material},
+                 {"sumsBody", embedded::map_sums},
+                 {"mapEval", embedded::map_eval},
+                 {"mapShade", embedded::map_shade},
+                 {"mapFunctions", wgsl ? embedded::map_functions_wgsl : embedded::map_functions}},
+                page);
 }
 
 void check(Language language, const MapSidecar& map, const MapShaderOptions& options) {
@@ -268,7 +268,7 @@ std::string mapShader(Language language, const MapSidecar& map, const MapShaderO
     cost("eval", eval);
     cost("shade", shade);
     cost("world", world);
-    setMapPartials(language, page);
+    setMapPartials(page);
     return gpu::rendered(words.text, page);
 }
 

@@ -1,6 +1,8 @@
 #include <hshfit/material_maps/exports/map_text.h>
 
 #include <hshfit/error.h>
+#include <hshfit/files/template_text.h>
+#include <hshfit/gpu/language_words.h>
 #include <hshfit/gpu/shader_data.h>
 
 #include <fmt/format.h>
@@ -16,33 +18,16 @@ namespace {
 
 using gpu::Language;
 using kainjow::mustache::data;
-using kainjow::mustache::partial;
 
 std::string_view nameOf(Language language) {
     return std::ranges::find(gpu::languages(), language, &gpu::LanguageEntry::language)->name;
 }
 
-std::string_view textOf(Language language) {
-    switch (language) {
-        case Language::glslEs:
-        case Language::glsl:
-            return embedded::map_glsl;
-        case Language::hlsl:
-        case Language::slang:
-            return embedded::map_hlsl;
-        case Language::wgsl:
-            return embedded::map_wgsl;
-        case Language::metal:
-            return embedded::map_metal;
-        case Language::osl:
-            break;
-    }
-    return embedded::map_osl;
-}
-
 /// Textures that functions take as arguments, where they are no globals.
 MapWords wordsOf(Language language, const MapTextures& textures) {
-    MapWords words{textOf(language)};
+    MapWords words{
+        gpu::textOf(language, {embedded::map_glsl, embedded::map_glsl, embedded::map_hlsl,
+                               embedded::map_wgsl, embedded::map_metal, embedded::map_osl})};
     const auto add = [&](const char* type, const char* name) {
         words.parameters += fmt::format("{} {}, ", type, name);
         words.pass += fmt::format("{}, ", name);
@@ -119,48 +104,26 @@ void setSizes(const MapTextures& textures, data& page) {
 
 MapWords setMapTextures(Language language, const MapTextures& textures, data& page) {
     const MapWords words = wordsOf(language, textures);
-    const bool wgsl = language == Language::wgsl;
-    page.set("letInt", wgsl ? "let" : "int");
-    page.set("varInt", wgsl ? "var" : "int");
-    page.set("toInt", wgsl ? "i32" : language == Language::osl ? "(int)" : "int");
     page.set("parameters", words.parameters);
     page.set("pass", words.pass);
-    page.set("inline", language == Language::metal ? "inline " : "");
-    page.set("es", language == Language::glslEs);
-    page.set("wgsl", wgsl);
     setSizes(textures, page);
     setCorners(page);
-    setPartial(page, "levelBody", embedded::map_level);
+    setPartials({{"levelBody", embedded::map_level}}, page);
     return words;
 }
 
 std::string texelFetchText(Language language, const std::string& prefix, const std::string& pass,
                            const std::string& layer) {
-    switch (language) {
-        case Language::glslEs:
-        case Language::glsl:
-            return fmt::format("texelFetch({}_map, ivec3(int(px), int(py), {}), int(level))",
-                               prefix, layer);
-        case Language::hlsl:
-        case Language::slang:
-            return fmt::format("{}_map.Load(int4(int(px), int(py), {}, int(level)))", prefix,
-                               layer);
-        case Language::wgsl:
-            return fmt::format("textureLoad({}_map, vec2<i32>(i32(px), i32(py)), {}, i32(level))",
-                               prefix, layer);
-        case Language::metal:
-            return fmt::format("map.read(uint2(uint(px), uint(py)), {}, uint(level))", layer);
-        case Language::osl:
-            break;
-    }
-    return fmt::format("{0}_mapTexel({1}{0}_Two((px + 0.5) / wide, (py + 0.5) / high), {2}, level)",
-                       prefix, pass, layer);
-}
-
-void setPartial(data& page, const char* name, std::string_view text) {
-    std::string body(text);
-    if (body.ends_with('\n')) body.pop_back();
-    page.set(name, data(partial([body] { return body; })));
+    constexpr const char* glsl = "texelFetch({0}_map, ivec3(int(px), int(py), {2}), int(level))";
+    const std::string_view form = gpu::textOf(
+        language,
+        {.glslEs = glsl,
+         .glsl = glsl,
+         .hlsl = "{0}_map.Load(int4(int(px), int(py), {2}, int(level)))",
+         .wgsl = "textureLoad({0}_map, vec2<i32>(i32(px), i32(py)), {2}, i32(level))",
+         .metal = "map.read(uint2(uint(px), uint(py)), {2}, uint(level))",
+         .osl = "{0}_mapTexel({1}{0}_Two((px + 0.5) / wide, (py + 0.5) / high), {2}, level)"});
+    return fmt::format(fmt::runtime(form), prefix, pass, layer);
 }
 
 void checkLayers(Language language, std::string_view what, std::size_t layers,

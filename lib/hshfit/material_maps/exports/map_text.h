@@ -36,9 +36,6 @@ MapWords setMapTextures(gpu::Language language, const MapTextures& textures,
 std::string texelFetchText(gpu::Language language, const std::string& prefix,
                            const std::string& pass, const std::string& layer);
 
-/// A template as the partial `name`, without its last newline.
-void setPartial(kainjow::mustache::data& page, const char* name, std::string_view text);
-
 /// Throws UsageError where a texture of the language has fewer layers; `instead` has fewer.
 void checkLayers(gpu::Language language, std::string_view what, std::size_t layers,
                  std::string_view instead);
