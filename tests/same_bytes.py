@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """same_bytes.py OLD [PATTERN]: holds that build/hshfit writes what the program OLD wrote.
 
-While it works, build/hshfit is a shim: each command of the demonstration and of the tests whose
-names match PATTERN (a ctest regular expression, by default those that run the program) is run by
-OLD twice and by build/hshfit once, each time from the same state of the files. Exit code, standard
+While it works, build/hshfit is a shim: each command of the demonstration and of the tests that run
+the program, or with PATTERN (a regular expression of ctest) of those tests alone, is run by OLD
+twice and by build/hshfit once, each time from the same state of the files. Exit code, standard
 output, standard error and every file have to be the same byte for byte. Parts in which the two runs
 of OLD differ, such as measured times, are counted and not compared. Prints each difference, then
 the counts; ends with 1 if there is a difference.
@@ -96,11 +96,12 @@ def check(old, pattern):
     PROGRAM.write_text(f'#!/bin/sh\nexec /usr/bin/python3 "{script}" --shim "$@"\n')
     PROGRAM.chmod(0o755)
     try:
-        for steps in ("demo.sh", "demo_wings.sh"):
+        for steps in () if pattern else ("demo.sh", "demo_wings.sh"):
             subprocess.run([TOP / "examples" / steps], env=environment, check=False,
                            stdout=subprocess.DEVNULL)
-        subprocess.run(["ctest", "--preset", "release", "-R", pattern], cwd=TOP, env=environment,
-                       check=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        subprocess.run(["ctest", "--preset", "release", "-R", pattern or TESTS], cwd=TOP,
+                       env=environment, check=False, stdout=subprocess.DEVNULL,
+                       stderr=subprocess.DEVNULL)
     finally:
         PROGRAM.unlink()
         shutil.copy2(new, PROGRAM)
@@ -119,4 +120,4 @@ def check(old, pattern):
 if __name__ == "__main__":
     if sys.argv[1:2] == ["--shim"]:
         shim(sys.argv[2:])
-    sys.exit(check(Path(sys.argv[1]).resolve(), sys.argv[2] if len(sys.argv) > 2 else TESTS))
+    sys.exit(check(Path(sys.argv[1]).resolve(), sys.argv[2] if len(sys.argv) > 2 else ""))
