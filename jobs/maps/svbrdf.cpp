@@ -11,7 +11,6 @@
 
 #include <hshfit/each_in_parallel.h>
 #include <hshfit/files/file_set.h>
-#include <hshfit/material_maps/cluster_encoder.h>
 #include <hshfit/material_maps/material_map.h>
 #include <hshfit/pictures/poor.h>
 #include <hshfit/pictures/rgb_picture.h>
@@ -82,12 +81,10 @@ MapSidecar sidecarOf(const MapWork& work, const SvbrdfOptions& options, const Te
     MapSidecar sidecar = work.head(options, levels);
     sidecar.form = options.form;
     sidecar.number = encoder.number();
-    if (const auto* lowRank = dynamic_cast<const LowRankEncoder*>(&encoder))
-        sidecar.shapes = lowRank->lowRank().shapes();
-    if (const auto* clusters = dynamic_cast<const ClusterEncoder*>(&encoder)) {
-        sidecar.shapes = clusters->lowRank().shapes();
-        sidecar.centres = clusters->centres();
-    }
+    const auto shapes = encoder.shapes();
+    sidecar.shapes.assign(shapes.begin(), shapes.end());
+    const auto centres = encoder.centres();
+    sidecar.centres.assign(centres.begin(), centres.end());
     if (options.form == "halfway") {
         for (std::size_t k = 0; k < sidecar.materials(); ++k)
             sidecar.files.push_back(materialName(k));

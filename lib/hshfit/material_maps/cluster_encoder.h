@@ -49,9 +49,11 @@ public:
                         const EncodedTexels& to) const override;
     void learn(std::size_t level, std::span<const float> linear) override;
 
+    std::span<const double> shapes() const override { return lowRank_.shapes(); }
+    /// Of all levels known so far.
+    std::span<const float> centres() const override { return centres_; }
+
     const LowRank& lowRank() const { return lowRank_; }
-    /// [material][channel * rank + r], of all levels known so far.
-    const std::vector<float>& centres() const { return centres_; }
     /// The weights of the material of a level that is nearest to a texel of linear() numbers.
     const float* centre(std::size_t level, const float* linear) const;
     /// Materials of a level.

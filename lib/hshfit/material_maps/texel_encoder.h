@@ -41,6 +41,9 @@ public:
     /// Neighbours of a level, linear[texel][linear()].
     virtual EncodedRange encode(std::size_t level, std::span<const float> linear,
                                 const EncodedTexels& to) const = 0;
+    /// What texels share, as MapSidecar has it; empty: nothing.
+    virtual std::span<const double> shapes() const { return {}; }
+    virtual std::span<const float> centres() const { return {}; }
     /// All texels of a level, before they are encoded; by the first process alone, of the levels
     /// that are made from the results of all.
     virtual void learn(std::size_t level, std::span<const float> linear) {
@@ -80,6 +83,7 @@ public:
     void reduce(const float* texel, float* linear) const override;
     EncodedRange encode(std::size_t level, std::span<const float> linear,
                         const EncodedTexels& to) const override;
+    std::span<const double> shapes() const override { return lowRank_.shapes(); }
     const LowRank& lowRank() const { return lowRank_; }
 
 private:

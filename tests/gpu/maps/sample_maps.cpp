@@ -120,8 +120,8 @@ std::unique_ptr<MaterialMap> writeSampleMap(const SampleMap& sample, const std::
     LevelFile file(path, encoder->number(), encoder->layers(), sidecar.levels);
     const BandPlan plan = planBands(sidecar.levels, file.bytesOfTexel(), std::size_t{1} << 24);
     writeMap(texels, *encoder, file, plan, alone);
-    if (const auto* clusters = dynamic_cast<const ClusterEncoder*>(encoder.get()))
-        sidecar.centres = clusters->centres();
+    const auto centres = encoder->centres();
+    sidecar.centres.assign(centres.begin(), centres.end());
     const std::string json = (std::filesystem::path(folder) / "material.json").string();
     writeFile(json, toText(sidecar));
     return std::make_unique<MaterialMap>(json);
