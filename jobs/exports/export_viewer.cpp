@@ -9,7 +9,7 @@
 #include <hshfit/gpu/forms/viewer_form.h>
 #include <hshfit/gpu/highlight.h>
 #include <hshfit/gpu/viewer.h>
-#include <hshfit/projection/projection.h>
+#include <hshfit/projection/one_basis.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 
 #include <fmt/format.h>
@@ -24,11 +24,11 @@ constexpr int texturesOrder = 7;
 /// HSH textures as an export of the usual projection has them.
 gpu::Payload texturesOf(const Brdf& brdf, const Listener& listener) {
     const auto basis = bases::make("hsh", texturesOrder);
-    const Basis* const one[] = {basis.get()};
     const OutgoingSet outgoing =
         brdf.laws().isotropic ? OutgoingSet::elevations(32) : OutgoingSet::parabolic(32, 32);
-    const auto projections = project(brdf, one, outgoing, {.progress = listener.part("viewer")});
-    return gpu::pack(projections[0].coefficients, {});
+    const Projection projection =
+        project(brdf, *basis, outgoing, {.progress = listener.part("viewer")});
+    return gpu::pack(projection.coefficients, {});
 }
 
 std::string detailOf(std::size_t bytes, std::optional<double> meanLog) {

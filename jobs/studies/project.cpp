@@ -14,6 +14,7 @@
 #include <hshfit/error.h>
 #include <hshfit/files/file_set.h>
 #include <hshfit/projection/least_squares.h>
+#include <hshfit/projection/one_basis.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/wording.h>
 
@@ -142,10 +143,9 @@ public:
             return result;
         }
         const OutgoingSet outgoing = outgoingOf({.outgoing = options_.outgoing}, brdf.laws());
-        const Basis* const one[] = {basis_.get()};
         result.projection = options_.leastSquares
                                 ? projectSamples(brdf, *basis_, outgoing, options_, progress)
-                                : std::move(hshfit::project(brdf, one, outgoing, how)[0]);
+                                : hshfit::project(brdf, *basis_, outgoing, how);
         result.captured = capturedShare(result.projection, brdf);
         if (!result.captured) result.remark = whyZero(brdf);
         result.picture = pictureErrorOf(brdf, Reconstruction(result.projection.coefficients));

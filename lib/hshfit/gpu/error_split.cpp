@@ -4,7 +4,7 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/error.h>
-#include <hshfit/projection/projection.h>
+#include <hshfit/projection/one_basis.h>
 
 #include <fmt/format.h>
 
@@ -96,13 +96,12 @@ ErrorSplit splitError(const Brdf& f, const Coefficients& coefficients, const Pay
     const OutgoingSet set = measuredAt(coefficients.outgoing, options.outgoing);
     const auto basis = bases::make(coefficients.basis, coefficients.order,
                                    {.condonShortley = coefficients.condonShortley});
-    const Basis* const one[] = {basis.get()};
     const auto plainly = [&](const OutgoingSet& outgoing) {
-        return std::move(project(f, one, outgoing,
-                                 {.quantity = coefficients.quantity,
-                                  .tolerance = options.tolerance,
-                                  .progress = options.progress})[0]
-                             .coefficients);
+        return project(f, *basis, outgoing,
+                       {.quantity = coefficients.quantity,
+                        .tolerance = options.tolerance,
+                        .progress = options.progress})
+            .coefficients;
     };
     const AtDirections projected(plainly(set));
     const Reconstruction given(coefficients), stored(unpack(payload));

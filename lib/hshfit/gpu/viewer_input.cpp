@@ -1,7 +1,7 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
 #include <hshfit/gpu/viewer.h>
-#include <hshfit/projection/projection.h>
+#include <hshfit/projection/one_basis.h>
 
 #include <fmt/format.h>
 
@@ -16,11 +16,10 @@ Payload inOtherBasis(const Payload& payload, const Brdf& source,
     const char* name = payload.head.basis == "sh" ? "hsh" : "sh";
     const int order = std::min(payload.head.order, bases::find(name).maxOrder);
     const auto basis = bases::make(name, order, {.condonShortley = payload.head.condonShortley});
-    const Basis* const one[] = {basis.get()};
-    const auto projections =
-        project(source, one, payload.head.outgoing,
+    const Projection projection =
+        project(source, *basis, payload.head.outgoing,
                 {.quantity = payload.head.quantity, .progress = std::move(progress)});
-    return pack(projections[0].coefficients, {});
+    return pack(projection.coefficients, {});
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
+#include <hshfit/projection/one_basis.h>
 #include <hshfit/quadrature/quadrature.h>
 #include <hshfit/representation/factoring_blocks.h>
 #include <hshfit/wording.h>
@@ -137,7 +138,6 @@ OuterGrid outerGrid(const Basis& basis, bool isotropic, int level) {
 std::vector<Projection> projectRings(const Brdf& brdf, const Basis& basis, const OuterGrid& grid,
                                      const ProjectionOptions& options) {
     constexpr double loosest = 0.1;
-    const Basis* const one[] = {&basis};
     const double heaviest = *std::max_element(grid.weights.begin(), grid.weights.end());
     std::vector<Projection> results(grid.rings.size());
     std::atomic<std::size_t> done = 0;
@@ -146,7 +146,7 @@ std::vector<Projection> projectRings(const Brdf& brdf, const Basis& basis, const
         own.progress = {};
         own.tolerance = std::clamp(options.tolerance * heaviest / grid.weights[r],
                                    options.tolerance, std::max(loosest, options.tolerance));
-        results[r] = std::move(project(brdf, one, grid.rings[r], own)[0]);
+        results[r] = project(brdf, basis, grid.rings[r], own);
         results[r].coefficients.error *= grid.weights[r] / heaviest;
         if (options.progress) options.progress(++done, results.size());
     });

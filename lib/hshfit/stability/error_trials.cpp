@@ -2,7 +2,7 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/error.h>
-#include <hshfit/projection/projection.h>
+#include <hshfit/projection/one_basis.h>
 
 #include <tbb/parallel_for.h>
 
@@ -19,11 +19,10 @@ constexpr double rounding = 1e-12;
 
 Projection projectTrial(const ErrorTrial& trial, double tolerance, std::size_t maxEvaluations) {
     const auto basis = bases::make(trial.basis, trial.order);
-    const Basis* const one[] = {basis.get()};
     return project(
-        *trial.brdf, one,
+        *trial.brdf, *basis,
         OutgoingSet::direction(radians(trial.thetaDegrees), radians(trial.phiDegrees)),
-        {.quantity = trial.quantity, .tolerance = tolerance, .maxEvaluations = maxEvaluations})[0];
+        {.quantity = trial.quantity, .tolerance = tolerance, .maxEvaluations = maxEvaluations});
 }
 
 double relativeDistance(const std::vector<double>& a, const std::vector<double>& exact) {

@@ -2,7 +2,7 @@
 
 #include <hshfit/bases/jacobi.h>
 #include <hshfit/error.h>
-#include <hshfit/projection/projection.h>
+#include <hshfit/projection/one_basis.h>
 #include <hshfit/rotation/sh_rotation.h>
 #include <hshfit/stability/internal/basis_change_errors.h>
 #include <hshfit/stability/internal/rotation_errors.h>
@@ -18,11 +18,10 @@ namespace {
 LobeProjection projectLobe(const Brdf& brdf, double thetaDegrees) {
     LobeProjection result{.brdf = brdf.name(), .thetaDegrees = thetaDegrees};
     const auto basis = bases::make("hsh", 7, {});
-    const Basis* const one[] = {basis.get()};
     try {
         const Projection projection =
-            project(brdf, one, OutgoingSet::direction(radians(thetaDegrees), 0),
-                    {.quantity = Quantity::brdfCosine})[0];
+            project(brdf, *basis, OutgoingSet::direction(radians(thetaDegrees), 0),
+                    {.quantity = Quantity::brdfCosine});
         const Coefficients& c = projection.coefficients;
         result.converged = c.energy.finite;
         result.reason = c.energy.reason;
