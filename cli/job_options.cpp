@@ -3,6 +3,7 @@
 #include "within.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
@@ -67,7 +68,8 @@ public:
         CLI::Option* option = command_.add_option(namesOf(row_), *value)->allow_extra_args(false);
         if (row_.values.syntax == jobs::Syntax::list) option->delimiter(',');
         checkRange<Element>(*option);
-        if (!value->empty() && !saysDefault()) option->capture_default_str();
+        if (!value->empty() && !saysDefault())
+            option->default_str(fmt::format("{}", fmt::join(*value, ",")));
         added(option);
     }
     template <class Value>

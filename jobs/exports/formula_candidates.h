@@ -42,7 +42,7 @@ std::vector<choice::Candidate> formulaCandidates(const CandidateSource& source,
 constexpr OptionRow formulasRow(Member kinds) {
     const OptionRow row{"formulas", kinds,
                         "Materials to measure beside coefficients: of model, lobes, gltf, openpbr, "
-                        "usd, or none (default: model,lobes)"};
+                        "usd, or none"};
     return row.takes({formulaWords, Syntax::list});
 }
 

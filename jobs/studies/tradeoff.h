@@ -21,7 +21,7 @@ struct TradeoffOptions {
     double maxEvaluations = static_cast<double>(ProjectionOptions{}.maxEvaluations);
     bool gpu = false;         ///< time the shaders of the fronts' forms
     std::string device = {};  ///< any, gpu, software, or a part of its name; takes `gpu`
-    std::vector<std::string> formulas = {"model", "lobes"};  ///< formulaCandidates
+    std::vector<std::string> formulas = choice::usualFormulas;  ///< formulaCandidates
     std::string pairs = {};  ///< CSV of pairs (readPairSample); empty: spread pairs
     int pairCount = 32768;   ///< of spread pairs, about
     /// CSV to write: the pairs, their weights and the values of the one BRDF; empty: none.
@@ -30,7 +30,7 @@ struct TradeoffOptions {
     /// For all BRDFs; forms that are not reached are left out. None: as long as it takes.
     std::optional<double> seconds = {};
 };
-/// Without those of the sweep.
+/// Without the options of the sweep.
 OptionRows<TradeoffOptions> tradeoffOptions();
 
 struct MeasuredTradeoffs {
@@ -41,7 +41,7 @@ struct MeasuredTradeoffs {
 
 /// The trade of bytes, time and error of each BRDF, with its files in the folder `output`
 /// (tradeoff::writeTradeoffs) unless that is empty. BRDFs are measured one at a time, so that
-/// times compare. The error of a single one is thrown; those of several are in `failures`. Throws
+/// times compare. The error of a single one is thrown; errors of several are in `failures`. Throws
 /// UsageError, InputError, NumericError and OutputError.
 MeasuredTradeoffs measureTradeoffs(const std::vector<std::string>& specs, const std::string& output,
                                    const TradeoffOptions& options, const Listener& listener = {});

@@ -30,6 +30,9 @@ struct Made {
     std::function<gpu::TimedShader()> shader = {};
 };
 
+/// The kinds of formulas that studies measure beside coefficients, unless others are asked for.
+inline const std::vector<std::string> usualFormulas = {"model", "lobes"};
+
 /// A way to have a material in a renderer, before it is made.
 struct Candidate {
     std::string kind;            ///< one of those that a renderer takes

@@ -86,9 +86,9 @@ struct PlanOptions {
     /// the scene does not state. Empty: nothing is known.
     std::vector<SeenMaterial> seen = {};
     bool costs = false;  ///< state what shaders cost on an AMD GPU (gpu::ShaderCosts)
-    std::vector<std::string> formulas = {"model", "lobes"};  ///< kinds to measure beside the forms
-    FormulaMaker makeFormulas = {};                          ///< none: no formulas
-    tradeoff::ProjectionFolder folder = {};                  ///< projections of earlier runs
+    std::vector<std::string> formulas = choice::usualFormulas;  ///< kinds to measure beside forms
+    FormulaMaker makeFormulas = {};                             ///< none: no formulas
+    tradeoff::ProjectionFolder folder = {};                     ///< projections of earlier runs
     bool byTime = false;  ///< measure nanoseconds and choose the fastest form within the budget
     /// For the searches together. A large halfway form is made after it where none was found.
     std::optional<double> seconds = {};
