@@ -20,6 +20,8 @@ OptionTables exportRows();
 OptionTables fitRows();
 OptionTables gaussianRows();
 OptionTables illuminateRows();
+OptionTables importRows();
+OptionTables infoRows();
 OptionTables irradianceRows();
 OptionTables libraryRows();
 OptionTables lightRows();

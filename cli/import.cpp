@@ -1,4 +1,6 @@
 #include "command.h"
+#include "command_rows.h"
+#include "job_options.h"
 
 #include <jobs/studies/import.h>
 
@@ -80,6 +82,10 @@ void runImport(const ImportArguments& arguments, const Globals& globals) {
 
 }  // namespace
 
+OptionTables importRows() {
+    return {jobs::importOptions().rows};
+}
+
 void addImport(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<ImportArguments>();
     command
@@ -88,7 +94,7 @@ void addImport(CLI::App& command, Globals& globals) {
         ->required();
     command.add_option("-o,--output", arguments->output, "Coefficient file, .json or .exr")
         ->required();
-    command.add_flag("--force", arguments->options.force, "Replace an existing file");
+    addOptions(command, jobs::importOptions(), arguments->options);
     command.callback([arguments, &globals] { runImport(*arguments, globals); });
 }
 

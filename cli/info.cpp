@@ -1,14 +1,15 @@
 #include "command.h"
+#include "command_rows.h"
 #include "documents.h"
 #include "form_lines.h"
 #include "health.h"
 #include "info_light.h"
+#include "job_options.h"
 
 #include <hshfit/brdf/transmission.h>
 #include <hshfit/files/json_fields.h>
 
 #include <jobs/common/many.h>
-#include <jobs/common/shared_options.h>
 #include <jobs/studies/info.h>
 
 #include <fmt/format.h>
@@ -117,7 +118,7 @@ std::string infoText(const Json& document) {
 
 struct InfoArguments {
     std::vector<std::string> specs;
-    bool rgb = false;
+    jobs::InfoOptions options;
 };
 
 /// The answer, and whether it is that of a light.
@@ -128,9 +129,10 @@ struct Described {
     std::string text() const { return light ? lightText(document) : infoText(document); }
 };
 
-Described describe(const std::string& spec, bool rgb, const jobs::Listener& listener) {
+Described describe(const std::string& spec, const jobs::InfoOptions& options,
+                   const jobs::Listener& listener) {
     if (looksLikeLight(spec)) return {lightAnswer(spec, jobs::describeLight(spec)), true};
-    return {answer(jobs::describeSource(spec, rgb, listener))};
+    return {answer(jobs::describeSource(spec, options, listener))};
 }
 
 /// One after the other, with an empty line in between.
@@ -138,7 +140,7 @@ void infoMany(const InfoArguments& arguments, Globals& globals) {
     const auto many = jobs::makeMany<Described>(
         jobs::expandInputs(arguments.specs, jobs::Members::both), {}, "info", listenerFor(globals),
         [&](const std::string& spec, const std::string&, const jobs::Listener& each) {
-            return describe(spec, arguments.rgb, each);
+            return describe(spec, arguments.options, each);
         });
     Json documents = Json::array();
     std::string text;
@@ -159,7 +161,8 @@ void infoMany(const InfoArguments& arguments, Globals& globals) {
 
 void runInfo(const InfoArguments& arguments, Globals& globals) {
     if (jobs::areMany(arguments.specs)) return infoMany(arguments, globals);
-    const Described described = describe(arguments.specs[0], arguments.rgb, listenerFor(globals));
+    const Described described =
+        describe(arguments.specs[0], arguments.options, listenerFor(globals));
     if (globals.json)
         printJson(described.document);
     else
@@ -168,6 +171,10 @@ void runInfo(const InfoArguments& arguments, Globals& globals) {
 
 }  // namespace
 
+OptionTables infoRows() {
+    return {jobs::infoOptions().rows};
+}
+
 void addInfo(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<InfoArguments>();
     command
@@ -175,7 +182,7 @@ void addInfo(CLI::App& command, Globals& globals) {
                     "BRDF, light, coefficient file or file of an export; one or more, and of a "
                     "folder its measured and coefficient files")
         ->required();
-    command.add_flag("--rgb", arguments->rgb, std::string(jobs::rgbRow({}).help));
+    addOptions(command, jobs::infoOptions(), arguments->options);
     command.callback([arguments, &globals] { runInfo(*arguments, globals); });
 }
 

@@ -18,7 +18,6 @@ using Json = nlohmann::ordered_json;
 
 struct IrradianceArguments {
     std::vector<std::string> specs;
-    std::string convention = "all", engine;
     jobs::IrradianceOptions options;
 };
 
@@ -54,7 +53,7 @@ Json conventionJson(const Convention& c, const NineRgb& radiance) {
 
 Json answer(const jobs::LitSurface& lit, const IrradianceArguments& arguments) {
     Json conventions = Json::array();
-    for (const Convention* each : selectConventions(arguments.convention))
+    for (const Convention* each : lit.conventions)
         conventions.push_back(conventionJson(*each, lit.radiance));
     const ZonalForm& zonal = lit.zonal;
     Json linear = Json::array();
@@ -64,7 +63,7 @@ Json answer(const jobs::LitSurface& lit, const IrradianceArguments& arguments) {
         {"version", 1},
         {"light", lit.light},
         {"order", arguments.options.order},
-        {"turn", arguments.options.turn},
+        {"turn", lit.turn},
         {"radiance", nineJson(lit.radiance)},
         {"irradiance", nineJson(lit.irradiance)},
         {"window", {{"name", lit.window}, {"factors", lit.factors}}},
@@ -107,25 +106,18 @@ std::string text(const jobs::LitSurface& lit, const IrradianceArguments& argumen
                                m, a[0], a[1], a[2], b[0], b[1], b[2]);
         }
     }
-    for (const Convention* each : selectConventions(arguments.convention)) {
+    for (const Convention* each : lit.conventions) {
         out += fmt::format(
             "\n{}: {}\n  signs {}; up {}; {}-handed\n  {}; divided by pi: {}\n"
             "  constants folded in: {}; {}\n  import of a panorama: {}; turn {:g}, no mirror{}\n{}",
             each->name, each->engine, each->signs, each->up, each->handedness, each->quantity,
             each->divided, each->constants, each->order, each->import, each->turn,
-            arguments.engine.empty() ? "" : ", applied", engineShader(*each, lit.radiance));
+            arguments.options.engine.empty() ? "" : ", applied", engineShader(*each, lit.radiance));
     }
     return out;
 }
 
-void runIrradiance(IrradianceArguments arguments, const Globals& globals) {
-    const auto chosen =
-        selectConventions(arguments.engine.empty() ? arguments.convention : arguments.engine);
-    if (!arguments.engine.empty()) {
-        if (chosen.size() != 1) throw UsageError("--for all: valid: one engine");
-        arguments.convention = arguments.engine;
-        arguments.options.turn = chosen.front()->turn;
-    }
+void runIrradiance(const IrradianceArguments& arguments, const Globals& globals) {
     const jobs::LitSurface lit = jobs::irradianceOfLight(arguments.specs, arguments.options);
     for (const std::string& remark : lit.remarks) note(globals, remark);
     if (globals.json)
@@ -147,15 +139,6 @@ void addIrradiance(CLI::App& command, Globals& globals) {
                     "One or more lights, which add up: kind:key=value,…, the path of a picture, or "
                     "PATH:convention=NAME of nine numbers (docs/explanation/irradiance.md)")
         ->required();
-    command
-        .add_option("--convention", arguments->convention,
-                    "three, unity, unity-csharp, filament, godot, unreal, babylon, gltf, "
-                    "playcanvas, cesium, geomerics or all")
-        ->capture_default_str();
-    command
-        .add_option("--for", arguments->engine,
-                    "One of these, with the light turned as its own import of panoramas does")
-        ->excludes("--convention");
     addOptions(command, jobs::irradianceOptions(), arguments->options);
     command.callback([arguments, &globals] { runIrradiance(*arguments, globals); });
 }

@@ -17,8 +17,8 @@ namespace {
 
 struct PlanArguments {
     std::string scene, output;
-    std::string lighting;  ///< models; empty: none
     plan::PlanOptions options;
+    jobs::PlanLightingOptions lighting;
 };
 
 std::string plannedLightingText(const std::vector<jobs::PlannedLighting>& planned) {
@@ -42,10 +42,11 @@ void runPlan(const PlanArguments& arguments, Globals& globals) {
     const plan::Plan result =
         jobs::planScene(arguments.scene, arguments.output, arguments.options, listenerFor(globals));
     std::vector<jobs::PlannedLighting> lighting;
-    if (!arguments.lighting.empty())
-        lighting = jobs::planLighting(result.scene, arguments.lighting, arguments.options.byTime,
+    const std::string& models = arguments.lighting.models;
+    if (!models.empty())
+        lighting = jobs::planLighting(result.scene, models, arguments.options.byTime,
                                       listenerFor(globals));
-    if (globals.json && !arguments.lighting.empty()) {
+    if (globals.json && !models.empty()) {
         auto document = nlohmann::ordered_json::parse(plan::planJson(result));
         document["lighting"] = jobs::plannedLightingJson(lighting);
         printJson(document);
@@ -62,7 +63,7 @@ void runPlan(const PlanArguments& arguments, Globals& globals) {
 }  // namespace
 
 OptionTables planRows() {
-    return {jobs::planOptions().rows};
+    return {jobs::planOptions().rows, jobs::planLightingOptions().rows};
 }
 
 void addPlan(CLI::App& command, Globals& globals) {
@@ -74,10 +75,7 @@ void addPlan(CLI::App& command, Globals& globals) {
                     "Folder for the coefficient files, plan.json, plan.csv and plan.html")
         ->required();
     addOptions(command, jobs::planOptions(), arguments->options);
-    command.add_option("--lighting", arguments->lighting,
-                       "Choose a model of lighting for each material too (hshfit tradeoff "
-                       "--lighting), within the number of its budget: all, or of coefficients, "
-                       "split-sum, ltc and prefiltered those named");
+    addOptions(command, jobs::planLightingOptions(), arguments->lighting);
     command.callback([arguments, &globals] { runPlan(*arguments, globals); });
 }
 

@@ -4,12 +4,9 @@
 #include "job_options.h"
 #include "topics.h"
 
-#include <hshfit/irradiance/conventions.h>
-
 #include <brdfs/catalog/preset.h>
 #include <brdfs/presets/preset_collection.h>
 #include <jobs/common/option_words.h>
-#include <jobs/lighting/lighting_models.h>
 
 #include <CLI/CLI.hpp>
 
@@ -21,17 +18,8 @@ namespace {
 using Words = std::vector<Word>;
 
 using jobs::basisWords;
-using jobs::lightingWords;
 using jobs::modelWords;
-using jobs::withAll;
 using jobs::wordsOf;
-
-Words conventionWords() {
-    Words words;
-    for (const Convention& convention : conventions())
-        words.push_back({std::string(convention.name), std::string(convention.engine)});
-    return withAll(words);
-}
 
 Words presetWords() {
     Words words = wordsOf(brdfs::presets());
@@ -69,7 +57,6 @@ constexpr ValueRow valueRows[] = {
     {"list", "TEXT", {presetWords}},
     {"manual", "--output", {nullptr, Syntax::word, Files::folder}},
     {"plan", "--output", {nullptr, Syntax::word, Files::folder}},
-    {"irradiance", "--for", {conventionWords}},
     {"plot", "--output", {nullptr, Syntax::word, Files::written}},
     {"render", "--output", {nullptr, Syntax::word, Files::written, ".png"}},
     {"report", "--output", {nullptr, Syntax::word, Files::folder}},
@@ -80,8 +67,6 @@ constexpr ValueRow valueRows[] = {
     {"tradeoff", "--output", {nullptr, Syntax::word, Files::folder}},
     {"transfer", "--output", {nullptr, Syntax::word, Files::folder}},
     {"", "--compare-models", {modelWords, Syntax::sum}},
-    {"", "--convention", {conventionWords}},
-    {"", "--lighting", {lightingWords, Syntax::list}},
     {"", "--output", {nullptr, Syntax::word, Files::written, ".json"}},
     {"", "A", {nullptr, Syntax::brdf, Files::read, ""}},
     {"", "B", {nullptr, Syntax::brdf, Files::read, ""}},

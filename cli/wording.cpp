@@ -24,6 +24,7 @@ constexpr RenamedMember renamedMembers[] = {
     {"FitOptions::places", "--at"},
     {"Form::kind", "--form"},
     {"Form::quantity", "--cosine", true},
+    {"IrradianceOptions::engine", "--for"},
     {"PathOptions::fewestBounces", "--from-bounce"},
     {"ProjectionOptions::quantity", "--cosine", true},
     {"TradeoffOptions::maxNanoseconds", "--max-ns"},

@@ -105,10 +105,14 @@ py::dict exported(const py::object& coefficients, const py::object& folder,
     return exportedDict(done);
 }
 
-void imported(const py::object& input, const py::object& output, bool force) {
+void imported(const py::object& input, const py::object& output, const py::kwargs& keywords) {
+    jobs::ImportOptions options;
+    Keywords given(keywords);
+    given.set(boundOptions(jobs::importOptions(), options));
+    given.finish();
     const std::string from = pathOf(input, "input"), to = pathOf(output, "output");
     const py::gil_scoped_release released;
-    jobs::importCoefficients(from, to, {.force = force});
+    jobs::importCoefficients(from, to, options);
 }
 
 py::dict healthOf(const Health& measured) {
@@ -124,11 +128,13 @@ py::dict healthOf(const Health& measured) {
     return health;
 }
 
-py::dict described(const py::object& spec, bool rgb, const py::object& progress) {
+py::dict described(const py::object& spec, const py::kwargs& keywords) {
+    jobs::InfoOptions options;
+    const py::object progress = optionsFrom(keywords, boundOptions(jobs::infoOptions(), options));
     const std::string source = pathOf(spec, "spec");
     jobs::BrdfInfo info;
     watched(progress, {}, [&](const jobs::Listener& listener) {
-        info = jobs::describeSource(source, rgb, listener);
+        info = jobs::describeSource(source, options, listener);
     });
     py::dict out;
     out["brdf"] = std::shared_ptr<Brdf>(std::move(info.brdf));
@@ -183,9 +189,16 @@ void bindExport(py::module_& module) {
 Returns a dict: "files" (role, target, path), "fit_error" against the source, "poor". All files are
 written, or none.)"},
            exported, py::arg("coefficients"), py::arg("folder"));
-    module.def("import_coefficients", imported, py::arg("input"), py::arg("output"), py::kw_only(),
-               py::arg("force") = false,
-               "Write the coefficients of a file of an export to .json or .exr.");
+    jobs::ImportOptions imports;
+    define(module,
+           {"import_coefficients",
+            "input: Path, output: Path",
+            boundOptions(jobs::importOptions(), imports),
+            "None",
+            "Write the coefficients of a file of an export to .json or .exr.",
+            {},
+            false},
+           imported, py::arg("input"), py::arg("output"));
 }
 
 }  // namespace
@@ -203,11 +216,13 @@ open() takes, a Brdf. Raises InputError that names the file and the field.)");
 (catalog("writers")). Returns a dict as Brdf.write() does.)"},
            converted, py::arg("input"), py::arg("output"));
     bindExport(module);
-    module.def("describe", described, py::arg("spec"), py::kw_only(), py::arg("rgb") = false,
-               py::arg("progress") = py::none(),
-               R"(The health of a BRDF, measured by evaluating it: a dict with "brdf", "min", "max",
+    jobs::InfoOptions info;
+    define(module,
+           {"describe", "spec: Path", boundOptions(jobs::infoOptions(), info), "Row",
+            R"(The health of a BRDF, measured by evaluating it: a dict with "brdf", "min", "max",
 "warnings", "health" (coverage, negative values, reciprocity, largest reflectance over wo,
-largest albedo over wi) and "repairs".)");
+largest albedo over wi) and "repairs".)"},
+           described, py::arg("spec"));
     jobs::SampleOptions samples;
     define(
         module,

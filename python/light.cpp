@@ -194,9 +194,10 @@ py::dict errorsDict(const IrradianceErrors& errors) {
     return out;
 }
 
-/// The options of irradiance(), which writes no file.
+/// The options of irradiance(), which writes no file and has no conventions unless asked.
 Options optionsOf(jobs::IrradianceOptions& options) {
-    return without(boundOptions(jobs::irradianceOptions(), options), {"by-normal"});
+    return without(boundOptions(jobs::irradianceOptions(), options),
+                   {"by-normal", "convention", "for"});
 }
 
 std::string wordOf(const py::object& word) {
@@ -207,18 +208,13 @@ py::dict irradianceOfSpecs(const py::object& specs, const py::kwargs& keywords) 
     jobs::IrradianceOptions options;
     Keywords given(keywords);
     given.set(optionsOf(options));
-    const std::string convention = wordOf(given.take("convention")),
-                      engine = wordOf(given.take("engine"));
+    options.convention = wordOf(given.take("convention"));
+    options.engine = wordOf(given.take("engine"));
     const py::object progress = given.take("progress");
     given.finish();
     const std::vector<std::string> texts = specificationsOf(specs);
-    if (!convention.empty() && !engine.empty())
+    if (!options.convention.empty() && !options.engine.empty())
         throw UsageError("irradiance: convention and engine are both given; valid: one of the two");
-    const std::string name = engine.empty() ? convention : engine;
-    const auto chosen = name.empty() ? std::vector<const Convention*>{} : selectConventions(name);
-    if (!engine.empty() && chosen.size() != 1)
-        throw UsageError("irradiance: engine='all'; valid: one engine");
-    if (!engine.empty()) options.turn = chosen.front()->turn;
     jobs::LitSurface done;
     watched(progress, {},
             [&](const jobs::Listener&) { done = jobs::irradianceOfLight(texts, options); });
@@ -230,7 +226,7 @@ py::dict irradianceOfSpecs(const py::object& specs, const py::kwargs& keywords) 
     out["factors"] = done.factors;
     out["mean_irradiance"] = done.meanIrradiance;
     out["error"] = errorsDict(done.error);
-    for (const Convention* one : chosen) {
+    for (const Convention* one : done.conventions) {
         py::dict row;
         row["values"] = engineValues(*one, done.radiance);
         row["shader"] = engineShader(*one, done.radiance);

@@ -13,6 +13,7 @@
 #include <hshfit/light/placement.h>
 #include <hshfit/transfer/convolution.h>
 #include <hshfit/transfer/windows.h>
+#include <hshfit/wording.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -84,18 +85,30 @@ void writeByNormal(const std::string& path, std::span<const Direction> normals,
     writeFile(path, text);
 }
 
+/// The conventions that are asked for, and the turn of an engine's import.
+void chooseConventions(const IrradianceOptions& options, LitSurface& result) {
+    const std::string& names = options.engine.empty() ? options.convention : options.engine;
+    if (!names.empty()) result.conventions = selectConventions(names);
+    if (options.engine.empty()) return;
+    if (result.conventions.size() != 1)
+        throw UsageError(fmt::format("{} {}: valid: one engine",
+                                     Setting{"IrradianceOptions::engine"}, options.engine));
+    result.turn = result.conventions.front()->turn;
+}
+
 }  // namespace
 
 LitSurface irradianceOfLight(const std::vector<std::string>& specs,
                              const IrradianceOptions& options) {
+    LitSurface result;
+    chooseConventions(options, result);
     LightSpecification specification{.text = fmt::format("{}", fmt::join(specs, " + ")),
                                      .lights = lightsOf(specs)};
-    if (options.turn != 0)
+    if (result.turn != 0)
         for (Light& each : specification.lights)
-            each = turned(std::move(each), radians(options.turn));
+            each = turned(std::move(each), radians(result.turn));
     LightCoefficients light =
         projectLight(specification.lights, *bases::makeSh(options.order, {}), {.tolerance = 1e-6});
-    LitSurface result;
     result.light = specification.text;
     result.remarks = remarksOf(specification.lights);
     applyWindow(light, result, options.window);

@@ -12,13 +12,14 @@
 namespace hshfit::jobs {
 
 struct IrradianceOptions {
+    std::string convention = "all";  ///< selectConventions
+    /// One of them, as whose engine imports panoramas the light is turned; empty: none.
+    std::string engine = {};
     int order = 3;                ///< bands of the irradiance
     std::string window = "none";  ///< none, hann, lanczos or least-negative
     std::size_t normals = 2000;   ///< of the lattice on which errors are taken
-    double turn = 0;              ///< degrees about +z by which the light is turned first
     std::string byNormal;         ///< CSV of the irradiances at them; empty: none
 };
-/// Without the turn.
 OptionRows<IrradianceOptions> irradianceOptions();
 
 struct LitSurface {
@@ -32,6 +33,8 @@ struct LitSurface {
     IrradianceErrors zonalError;
     IrradianceErrors geomericsError;        ///< of two bands with the reconstruction of Geomerics
     std::vector<std::string> remarks = {};  ///< on the files of the light
+    double turn = 0;                        ///< degrees about +z by which the light was turned
+    std::vector<const Convention*> conventions = {};  ///< that were asked for
 };
 
 /// The irradiance of the sum of all specifications by coefficients, and its error against direct

@@ -13,6 +13,13 @@ std::vector<Word> irradianceWindows() {
     return {{"none"}, {"hann"}, {"lanczos"}, {"least-negative"}};
 }
 
+std::vector<Word> conventionWords() {
+    std::vector<Word> words;
+    for (const Convention& convention : conventions())
+        words.push_back({std::string(convention.name), std::string(convention.engine)});
+    return withAll(words);
+}
+
 Orientation normalIn(const std::string& text) {
     const Direction normal = anglesIn(text, "LightOptions::normal", 180).direction();
     return {.theta = polarAngle(normal), .phi = azimuth(normal), .turn = 0};
@@ -41,6 +48,15 @@ constexpr OptionRow lightRows[] = {
 };
 
 constexpr OptionRow irradianceRows[] = {
+    OptionRow{"convention", at<&IrradianceOptions::convention>,
+              "three, unity, unity-csharp, filament, godot, unreal, babylon, gltf, playcanvas, "
+              "cesium, geomerics or all"}
+        .takes({.words = conventionWords}),
+    OptionRow{"for", at<&IrradianceOptions::engine>,
+              "One of these, with the light turned as its own import of panoramas does"}
+        .takes({.words = conventionWords})
+        .inPython("engine")
+        .notWith("convention"),
     OptionRow{"order", at<&IrradianceOptions::order>, "Bands of the irradiance"}.within(
         bounds::irradianceOrder),
     OptionRow{"window", at<&IrradianceOptions::window>,

@@ -10,6 +10,11 @@
 
 namespace hshfit::jobs {
 
+struct PlanLightingOptions {
+    std::string models = {};  ///< selectLightingModels; empty: none
+};
+OptionRows<PlanLightingOptions> planLightingOptions();
+
 /// The way to light a material of a scene in real time.
 struct PlannedLighting {
     std::string material;

@@ -1,8 +1,10 @@
 #include "plan.h"
+#include "plan_lighting.h"
 
 #include <jobs/common/option_words.h>
 #include <jobs/exports/formula_candidates.h>
 #include <jobs/exports/projection_cache.h>
+#include <jobs/lighting/lighting_models.h>
 
 namespace hshfit::jobs {
 namespace {
@@ -27,10 +29,22 @@ constexpr OptionRow planRows[] = {
     cacheRow(at<&PlanOptions::folder, &tradeoff::ProjectionFolder::path>),
 };
 
+constexpr OptionRow planLightingRows[] = {
+    OptionRow{"lighting", at<&PlanLightingOptions::models>,
+              "Choose a model of lighting for each material too (hshfit tradeoff --lighting), "
+              "within the number of its budget: all, or of coefficients, split-sum, ltc and "
+              "prefiltered those named"}
+        .takes({lightingWords, Syntax::list}),
+};
+
 }  // namespace
 
 OptionRows<plan::PlanOptions> planOptions() {
     return {planRows};
+}
+
+OptionRows<PlanLightingOptions> planLightingOptions() {
+    return {planLightingRows};
 }
 
 }  // namespace hshfit::jobs

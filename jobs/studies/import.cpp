@@ -14,6 +14,17 @@
 #include <utility>
 
 namespace hshfit::jobs {
+namespace {
+
+constexpr OptionRow importRows[] = {
+    OptionRow{"force", options::at<&ImportOptions::force>, "Replace an existing file"},
+};
+
+}  // namespace
+
+OptionRows<ImportOptions> importOptions() {
+    return {importRows};
+}
 
 Imported importCoefficients(const std::string& input, const std::string& output,
                             const ImportOptions& options) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <jobs/common/option_row.h>
+
 #include <hshfit/gpu/containers/containers.h>
 #include <hshfit/gpu/forms/form_files.h>
 #include <hshfit/gpu/proposals/proposal_record.h>
@@ -14,6 +16,7 @@ namespace hshfit::jobs {
 struct ImportOptions {
     bool force = false;  ///< replace an existing file
 };
+OptionRows<ImportOptions> importOptions();
 
 struct Imported {
     std::variant<gpu::ImportedPayload, gpu::ImportedForm> read;

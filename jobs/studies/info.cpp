@@ -1,5 +1,6 @@
 #include "info.h"
 
+#include <jobs/common/shared_options.h>
 #include <jobs/source/source.h>
 
 #include <hshfit/accuracy/isotropy.h>
@@ -9,6 +10,7 @@
 #include <hshfit/quadrature/quadrature.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 
+#include <brdfs/fit/fit_samples.h>
 #include <brdfs/measured/own_samples.h>
 #include <brdfs/repair.h>
 
@@ -22,14 +24,16 @@
 namespace hshfit::jobs {
 namespace {
 
-/// The cost of an evaluation relative to that of a few lobes: sums and mixtures have a lobe
+constexpr OptionRow infoRows[] = {rgbRow(options::at<&InfoOptions::rgb>)};
+
+/// The cost of an evaluation relative to the cost of a few lobes: sums and mixtures have a lobe
 /// for every term that they add up.
 std::size_t costOf(const Brdf& brdf) {
     constexpr std::size_t fewLobes = 32;
     return 1 + brdf.lobes(directionFromAngles(pi / 4, 0)).size() / fewLobes;
 }
 
-/// Every `step`-th ring of the grid, with 64 azimuths about that of wo.
+/// Every `step`-th ring of the grid, with 64 azimuths about wo's.
 void widenRange(BrdfInfo& info, const Direction& wo, const HemisphereGrid& grid, std::size_t step) {
     for (const auto& panel : grid.panels) {
         for (std::size_t r = 0; r < panel.rings; ++r) {
@@ -101,18 +105,20 @@ void warn(BrdfInfo& info, const Brdf* reflectance, const std::string& likeness) 
 Health healthOf(const Brdf& brdf, const Listener& listener) {
     HealthOptions options{.progress = listener.part("info")};
     // A search among samples takes some twenty times as long as a look into a table.
-    const auto* view = dynamic_cast<const ChannelView*>(&brdf);
-    const bool searched =
-        dynamic_cast<const brdfs::HasMeasuredPairs*>(view ? &view->seen() : &brdf) != nullptr;
-    if (!searched) options.albedoEvaluations *= 4;
+    if (!brdfs::areMeasured(brdf)) options.albedoEvaluations *= 4;
     options.albedoEvaluations /= costOf(brdf);
     return examine(brdf, options);
 }
 
 }  // namespace
 
-BrdfInfo describeSource(const std::string& source, bool rgb, const Listener& listener) {
-    BrdfInfo info{.brdf = openSource(source, rgb, Sides::eitherAndNamed)};
+OptionRows<InfoOptions> infoOptions() {
+    return {infoRows};
+}
+
+BrdfInfo describeSource(const std::string& source, const InfoOptions& options,
+                        const Listener& listener) {
+    BrdfInfo info{.brdf = openSource(source, options.rgb, Sides::eitherAndNamed)};
     const Brdf& brdf = *info.brdf;
     if (const auto* plain = dynamic_cast<const Reconstruction*>(&brdf))
         info.coefficients = &plain->coefficients();

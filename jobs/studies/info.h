@@ -1,6 +1,7 @@
 #pragma once
 
 #include <jobs/common/listener.h>
+#include <jobs/common/option_row.h>
 
 #include <hshfit/accuracy/health.h>
 #include <hshfit/gpu/containers/containers.h>
@@ -19,6 +20,11 @@
 #include <vector>
 
 namespace hshfit::jobs {
+
+struct InfoOptions {
+    bool rgb = false;  ///< wavelengths as linear Rec. 709
+};
+OptionRows<InfoOptions> infoOptions();
 
 struct SuggestedRepair {
     std::string_view name;  ///< brdfs::repairs
@@ -45,7 +51,8 @@ struct BrdfInfo {
 
 /// Facts of a source as in openSource. Stored values that are not finite are counted, not refused.
 /// Throws UsageError and InputError.
-BrdfInfo describeSource(const std::string& source, bool rgb = false, const Listener& listener = {});
+BrdfInfo describeSource(const std::string& source, const InfoOptions& options = {},
+                        const Listener& listener = {});
 
 struct LightInfo {
     std::vector<Light> lights;
