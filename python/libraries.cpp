@@ -1,21 +1,22 @@
 #include "answers.h"
 #include "arrays.h"
+#include "job_options.h"
 #include "watched.h"
 
 #include <hshfit/error.h>
 #include <hshfit/material_library/library_file.h>
 #include <hshfit/material_library/log_terms.h>
 
-#include <jobs/library/library_map.h>
-#include <jobs/library/material_library.h>
-#include <jobs/library/material_samples.h>
+#include <jobs/library/library_options.h>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 #include <nlohmann/json.hpp>
 
+#include <initializer_list>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -36,24 +37,38 @@ std::shared_ptr<Opened> opened(const std::string& path) {
     return library;
 }
 
+namespace of = jobs::libraries;
+
+/// The options of some actions, as the rows of the command have them.
+Options optionsOf(jobs::LibraryOptions& options, unsigned actions,
+                  std::initializer_list<std::string_view> leftOut = {}) {
+    Options all = without(boundOptions(jobs::libraryOptions(), options), leftOut);
+    std::erase_if(all,
+                  [&](const jobs::BoundOption& each) { return (each.row->inputs & actions) == 0; });
+    return all;
+}
+
+/// The number of components, 0 for auto.
+std::size_t componentsIn(const jobs::LibraryOptions& options) {
+    return options.components == "0" ? 0 : options.componentCount();
+}
+
 std::shared_ptr<Opened> learned(const py::object& specs, const py::object& file,
-                                std::size_t components, std::size_t bytes, double heldOut,
-                                double limit, double limitMaximum, double limitFlip,
-                                const py::object& addTo, const py::object& progress) {
-    requireWithin("components", static_cast<double>(components), 0, 512);
-    requireWithin("bytes", static_cast<double>(bytes), 6, 65536);
-    requireWithin("held_out", heldOut, 0.01, 0.5);
+                                const py::kwargs& keywords) {
+    jobs::LibraryOptions options;
+    const py::object progress = optionsFrom(keywords, optionsOf(options, of::learn));
     const bool one = py::isinstance<py::str>(specs) || py::hasattr(specs, "__fspath__");
     std::vector<std::string> sources;
     for (const py::handle spec : one ? py::object(py::make_tuple(specs)) : specs)
         sources.push_back(pathOf(py::reinterpret_borrow<py::object>(spec), "specs"));
-    jobs::LearnLibraryOptions options{
-        .learn = {.components = components, .bytes = bytes, .heldOut = heldOut},
-        .limits = {.log = limit, .maximum = limitMaximum, .flip = limitFlip}};
-    if (!addTo.is_none()) options.addTo = pathOf(addTo, "add_to");
+    jobs::LearnLibraryOptions how = options.learn;
+    how.learn.components = componentsIn(options);
+    how.limits = {options.encode.log.value_or(how.limits.log),
+                  options.encode.maximum.value_or(how.limits.maximum),
+                  options.encode.flip.value_or(how.limits.flip)};
     auto library = std::make_shared<Opened>(Opened{pathOf(file, "file"), {}});
     watched(progress, {}, [&](const jobs::Listener& listener) {
-        library->library = jobs::learnLibrary(sources, library->path, options, listener).library;
+        library->library = jobs::learnLibrary(sources, library->path, how, listener).library;
     });
     return library;
 }
@@ -96,11 +111,15 @@ py::array_t<double> coefficientsOf(const Opened& self, const std::string& name) 
 }
 
 py::dict encoded(const Opened& self, const std::string& spec, const py::object& file,
-                 std::size_t components, const py::object& progress) {
+                 const py::kwargs& keywords) {
+    jobs::LibraryOptions options;
+    const py::object progress = optionsFrom(keywords, optionsOf(options, of::encode));
     const std::string output = pathOf(file, "file");
+    jobs::EncodeOptions how = options.encode;
+    how.components = componentsIn(options);
     jobs::EncodedMaterial done;
     watched(progress, {}, [&](const jobs::Listener& listener) {
-        done = jobs::encodeMaterial(self.path, spec, output, {.components = components}, listener);
+        done = jobs::encodeMaterial(self.path, spec, output, how, listener);
     });
     py::dict answer;
     answer["name"] = done.material.name;
@@ -112,24 +131,27 @@ py::dict encoded(const Opened& self, const std::string& spec, const py::object& 
     return answer;
 }
 
-py::object mapped(const Opened& self, const py::object& file, double near,
-                  const py::object& progress) {
-    requireWithin("near", near, 0, 1);
+py::object mapped(const Opened& self, const py::object& file, const py::kwargs& keywords) {
+    jobs::LibraryOptions options;
+    const py::object progress = optionsFrom(keywords, optionsOf(options, of::map));
     const std::string output = pathOf(file, "file");
     jobs::LibraryMap map;
     watched(progress, {}, [&](const jobs::Listener& listener) {
-        map = jobs::mapLibrary(self.path, output, {.near = near}, listener);
+        map = jobs::mapLibrary(self.path, output, options.map, listener);
     });
     return fromJson(jobs::libraryMapJson(map));
 }
 
 py::dict reconstructed(const Opened& self, const py::object& samples, const py::object& file,
-                       const std::string& sigma, const py::object& progress) {
+                       const py::kwargs& keywords) {
+    jobs::LibraryOptions options;
+    const py::object progress =
+        optionsFrom(keywords, optionsOf(options, of::reconstruct, {"library"}));
+    options.reconstruct.library = self.path;
     const std::string from = pathOf(samples, "samples"), output = pathOf(file, "file");
     jobs::ReconstructedMaterial done;
     watched(progress, {}, [&](const jobs::Listener& listener) {
-        done = jobs::reconstructMaterial(from, output, {.library = self.path, .sigma = sigma},
-                                         listener);
+        done = jobs::reconstructMaterial(from, output, options.reconstruct, listener);
     });
     py::dict answer;
     answer["name"] = done.name;
@@ -142,17 +164,25 @@ py::dict reconstructed(const Opened& self, const py::object& samples, const py::
     return answer;
 }
 
-py::array_t<double> nextOf(const Opened& self, std::size_t count, const py::object& samples,
-                           const std::string& instrument, const std::string& sigma) {
+Options nextOptions(jobs::LibraryOptions& options) {
+    return optionsOf(options, of::next, {"count", "library"});
+}
+
+py::array_t<double> nextOf(const Opened& self, std::size_t count, const py::kwargs& keywords) {
+    jobs::LibraryOptions options;
+    Keywords given(keywords);
+    given.set(nextOptions(options));
+    const py::object samples = given.take("samples");
+    given.finish();
     requireWithin("count", static_cast<double>(count), 1, 1000);
-    if (instrument != "free" && instrument != "in-plane")
-        throw UsageError(fmt::format("instrument '{}': expected free or in-plane", instrument));
     const std::string from = samples.is_none() ? std::string() : pathOf(samples, "samples");
     std::vector<ml::NextPair> pairs;
     unwatched({}, [&] {
-        pairs = jobs::nextPairs(
-            from, "",
-            {.library = self.path, .sigma = sigma, .count = count, .instrument = instrument});
+        pairs = jobs::nextPairs(from, "",
+                                {.library = self.path,
+                                 .sigma = options.reconstruct.sigma,
+                                 .count = count,
+                                 .instrument = options.next.instrument});
     });
     std::vector<double> rows;
     for (const ml::NextPair& next : pairs)
@@ -165,22 +195,13 @@ py::array_t<double> nextOf(const Opened& self, std::size_t count, const py::obje
 }  // namespace
 
 void bindLibraries(py::module_& module) {
-    const ml::LearnOptions learn;
-    const ml::Limits limits;
-    const py::none none;
+    jobs::LibraryOptions options;
     py::class_<Opened, std::shared_ptr<Opened>>(
         module, "Library",
         "A library of materials: a basis learned from them, and their numbers in it.\n"
         "ln(f + 0.001) = mean + coefficients @ components, over functions of the library's form.")
         .def(py::init([](const py::object& path) { return opened(pathOf(path, "path")); }),
              py::arg("path"), "Reads a library. Raises InputError for a file that is none.")
-        .def_static("learn", learned, py::arg("specs"), py::arg("file"), py::kw_only(),
-                    py::arg("components") = learn.components, py::arg("bytes") = learn.bytes,
-                    py::arg("held_out") = learn.heldOut, py::arg("limit") = limits.log,
-                    py::arg("limit_maximum") = limits.maximum, py::arg("limit_flip") = limits.flip,
-                    py::arg("add_to") = none, py::arg("progress") = none,
-                    "Learns a library from specifications, files and folders, and writes it to a\n"
-                    "file; arguments are the options of `hshfit library learn`, components 0 auto.")
         .def_property_readonly(
             "path", [](const Opened& self) { return self.path; }, "The file.")
         .def_property_readonly("names", namesOf, "The names of the materials, sorted.")
@@ -189,24 +210,50 @@ void bindLibraries(py::module_& module) {
                                "The components, (components, functions).")
         .def("coefficients", coefficientsOf, py::arg("name"),
              "Numbers of a material in the basis, (channels, components). Raises UsageError for\n"
-             "a material with a form of its own.")
-        .def("encode", encoded, py::arg("spec"), py::arg("file"), py::kw_only(),
-             py::arg("components") = 0, py::arg("progress") = none,
-             "Encodes a material in the basis and writes a library of it alone; the answer has\n"
-             "name, kind, bytes, picture and fallback, why it has a form of its own, or None.")
-        .def("map", mapped, py::arg("file"), py::kw_only(),
-             py::arg("near") = jobs::LibraryMapOptions{}.near, py::arg("progress") = none,
-             "Writes a page of all materials by similarity, .html; the answer has the keys of\n"
-             "`hshfit library map --json`. near: the FLIP of near duplicates, at most.")
-        .def("reconstruct", reconstructed, py::arg("samples"), py::arg("file"), py::kw_only(),
-             py::arg("sigma") = jobs::ReconstructOptions{}.sigma, py::arg("progress") = none,
-             "A material from a file of samples, the library as prior; writes a library of it\n"
-             "alone. The answer has chi_square, degrees_of_freedom, usual, known, expected_error.")
-        .def("next", nextOf, py::arg("count") = jobs::NextPairsOptions{}.count, py::kw_only(),
-             py::arg("samples") = none, py::arg("instrument") = "free",
-             py::arg("sigma") = jobs::NextPairsOptions{}.sigma,
-             "Directions to measure next, (count, 5): theta_i, phi_i, theta_o, phi_o in degrees\n"
-             "and the expected error of ln(f + 0.001). instrument: free or in-plane.");
+             "a material with a form of its own.");
+    const py::object type = module.attr("Library");
+    const OptionFunction learn{
+        "learn", "specs: Union[Path, Sequence[Path]], file: Path", optionsOf(options, of::learn),
+        "Library",
+        "Learns a library from specifications, files and folders, and writes it to a file."};
+    {
+        py::options signatures;
+        signatures.disable_function_signatures();
+        type.attr("learn") =
+            py::staticmethod(py::cpp_function(learned, py::name("learn"), py::arg("specs"),
+                                              py::arg("file"), docstring(learn).c_str()));
+    }
+    defineMethod(type,
+                 {"encode", "spec: str, file: Path", optionsOf(options, of::encode), "Row",
+                  R"(Encodes a material in the basis and writes a library of it alone.
+
+The answer has name, kind, bytes, picture and fallback, why it has a form of its own, or None.)"},
+                 encoded, py::arg("spec"), py::arg("file"));
+    defineMethod(type,
+                 {"map", "file: Path", optionsOf(options, of::map), "Row",
+                  R"(Writes a page of all materials by similarity, .html.
+
+The answer has the keys of `hshfit library map --json`.)"},
+                 mapped, py::arg("file"));
+    defineMethod(type,
+                 {"reconstruct", "samples: Path, file: Path",
+                  optionsOf(options, of::reconstruct, {"library"}), "Row",
+                  R"(A material from a file of samples, the library as prior.
+
+Writes a library of it alone. The answer has chi_square, degrees_of_freedom, usual, known,
+expected_error.)"},
+                 reconstructed, py::arg("samples"), py::arg("file"));
+    defineMethod(type,
+                 {"next",
+                  "count: int = 10",
+                  nextOptions(options),
+                  "Floats",
+                  R"(Directions to measure next, (count, 5).
+
+theta_i, phi_i, theta_o, phi_o in degrees and the expected error of ln(f + 0.001).)",
+                  {{"samples", "Optional[Path]"}},
+                  false},
+                 nextOf, py::arg("count") = jobs::NextPairsOptions{}.count);
 }
 
 }  // namespace hshfit::python

@@ -312,13 +312,14 @@ class Library:
         specs: Union[Path, Sequence[Path]],
         file: Path,
         *,
-        components: int = ...,
+        components: Union[int, str] = ...,
         bytes: int = ...,
         held_out: float = ...,
-        limit: float = ...,
-        limit_maximum: float = ...,
-        limit_flip: float = ...,
+        limit: Optional[float] = ...,
+        limit_maximum: Optional[float] = ...,
+        limit_flip: Optional[float] = ...,
         add_to: Optional[Path] = ...,
+        final: bool = ...,
         progress: Progress = ...,
     ) -> Library: ...
     @property
@@ -331,19 +332,34 @@ class Library:
     def components(self) -> Floats: ...
     def coefficients(self, name: str) -> Floats: ...
     def encode(
-        self, spec: str, file: Path, *, components: int = ..., progress: Progress = ...
+        self,
+        spec: str,
+        file: Path,
+        *,
+        components: Union[int, str] = ...,
+        limit: Optional[float] = ...,
+        limit_maximum: Optional[float] = ...,
+        limit_flip: Optional[float] = ...,
+        progress: Progress = ...,
     ) -> Row: ...
     def map(self, file: Path, *, near: float = ..., progress: Progress = ...) -> Row: ...
     def reconstruct(
-        self, samples: Path, file: Path, *, sigma: str = ..., progress: Progress = ...
+        self,
+        samples: Path,
+        file: Path,
+        *,
+        sigma: str = ...,
+        bands: Optional[Path] = ...,
+        bands_to: Optional[Path] = ...,
+        progress: Progress = ...,
     ) -> Row: ...
     def next(
         self,
         count: int = ...,
         *,
-        samples: Optional[Path] = ...,
-        instrument: str = ...,
         sigma: str = ...,
+        instrument: str = ...,
+        samples: Optional[Path] = ...,
     ) -> Floats: ...
 
 class Light:
@@ -603,8 +619,18 @@ def export(
     force: bool = ...,
     progress: Progress = ...,
 ) -> Row: ...
-def import_coefficients(input: Path, output: Path, *, force: bool = ...) -> None: ...
-def describe(spec: Path, *, rgb: bool = ..., progress: Progress = ...) -> Row: ...
+def import_coefficients(
+    input: Path,
+    output: Path,
+    *,
+    force: bool = ...,
+) -> None: ...
+def describe(
+    spec: Path,
+    *,
+    rgb: bool = ...,
+    progress: Progress = ...,
+) -> Row: ...
 def sample(
     spec: Path,
     wo: ArrayLike,
