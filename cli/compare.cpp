@@ -20,7 +20,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace hshfit::cli {
@@ -55,6 +57,35 @@ Json answer(const jobs::Compared& compared, const CompareArguments& arguments) {
     return document;
 }
 
+/// The text with BRDFs named as they were given, whose own names may state forty parameters.
+std::string asGiven(std::string text, const jobs::Compared& compared,
+                    const CompareArguments& arguments) {
+    for (const auto& [name, given] :
+         {std::pair{&compared.b, &arguments.others[0]}, std::pair{&compared.a, &arguments.a}}) {
+        if (given->size() >= name->size()) continue;
+        for (std::size_t at = text.find(*name); at != std::string::npos;
+             at = text.find(*name, at + given->size()))
+            text.replace(at, name->size(), *given);
+    }
+    return text;
+}
+
+/// Lines of metrics. A reason that several of them have is stated once.
+std::string metricsText(const jobs::Compared& compared, const CompareArguments& arguments) {
+    std::string out;
+    std::map<std::string, std::string> reasons;  // the first metric of each
+    for (MetricValue result : compared.metrics) {
+        if (!result.value) {
+            const auto [first, isNew] =
+                reasons.emplace(result.reason, std::string(result.metric->name));
+            result.reason = isNew ? asGiven(result.reason, compared, arguments)
+                                  : fmt::format("as {}", first->second);
+        }
+        out += metricText(result);
+    }
+    return out;
+}
+
 std::string text(const jobs::Compared& compared, const CompareArguments& arguments) {
     std::string out = fmt::format("{} against {}, outgoing {}\n", arguments.others[0], arguments.a,
                                   compared.outgoing.spec());
@@ -64,7 +95,7 @@ std::string text(const jobs::Compared& compared, const CompareArguments& argumen
                            compared.picture ? ": drawn as if it were reflected" : "");
     if (!compared.undrawn.empty())
         out += fmt::format("  no picture error: {} is no reflectance\n", compared.undrawn);
-    for (const MetricValue& result : compared.metrics) out += metricText(result);
+    out += metricsText(compared, arguments);
     if (compared.pairs) out += "  " + indented(textOf(*compared.pairs));
     if (compared.samples) {
         out += fmt::format("  at the {} measured pairs of {} alone:\n", compared.samples->count,
