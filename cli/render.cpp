@@ -55,7 +55,16 @@ std::string textOf(const std::string& output, const jobs::RenderOptions& options
     return text;
 }
 
-void runRender(const RenderArguments& arguments, bool surface, const Globals& globals) {
+void runRender(const CLI::App& command, const RenderArguments& arguments, const Globals& globals) {
+    namespace sheets = jobs::sheets;
+    const auto misplaced = [&](unsigned kinds) {
+        return misplacedOption(command, jobs::sheetOptions().rows, kinds);
+    };
+    const bool surface = misplaced(sheets::spheres | sheets::details).has_value();
+    const auto sheet = jobs::sheetOf(arguments.options, surface);
+    if (std::holds_alternative<jobs::SphereSheetOptions>(sheet))
+        if (const auto given = misplaced(sheets::spheres)) jobs::refuseDetail(given->name);
+
     const auto render = [&](const auto& options) {
         const auto done =
             jobs::render(arguments.specs, arguments.output, options, listenerFor(globals));
@@ -64,7 +73,7 @@ void runRender(const RenderArguments& arguments, bool surface, const Globals& gl
         else
             printText(textOf(arguments.output, options, done));
     };
-    std::visit(render, jobs::sheetOf(arguments.options, surface));
+    std::visit(render, sheet);
 }
 
 }  // namespace
@@ -82,11 +91,7 @@ void addRender(CLI::App& command, Globals& globals) {
     command.add_option("-o,--output", arguments->output, "Picture to write, .png or .exr")
         ->required();
     addOptions(command, jobs::sheetOptions(), arguments->options);
-    command.callback([arguments, &globals, &command] {
-        const bool surface =
-            misplacedOption(command, jobs::sheetOptions().rows, jobs::sheets::spheres).has_value();
-        runRender(*arguments, surface, globals);
-    });
+    command.callback([arguments, &globals, &command] { runRender(command, *arguments, globals); });
 }
 
 }  // namespace hshfit::cli

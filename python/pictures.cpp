@@ -21,7 +21,11 @@ py::object render(const py::object& specs, const py::object& path, const py::kwa
     given.set(boundOptions(jobs::sheetOptions(), asked));
     const py::object progress = given.take("progress");
     given.finish();
-    const bool surface = given.misplaced(jobs::sheets::spheres) != nullptr;
+    namespace sheets = jobs::sheets;
+    const bool surface = given.misplaced(sheets::spheres | sheets::details) != nullptr;
+    const auto sheet = jobs::sheetOf(asked, surface);
+    if (std::holds_alternative<jobs::SphereSheetOptions>(sheet))
+        if (const auto* row = given.misplaced(sheets::spheres)) jobs::refuseDetail(keywordOf(*row));
     const std::vector<std::string> sources = pathsOf(specs, "specs");
     const std::string output = pathOf(path, "path");
     nlohmann::ordered_json answer;
@@ -30,7 +34,7 @@ py::object render(const py::object& specs, const py::object& path, const py::kwa
             answer =
                 jobs::renderJson(jobs::render(sources, output, options, listener), options, output);
         };
-        std::visit(draw, jobs::sheetOf(asked, surface));
+        std::visit(draw, sheet);
     });
     return fromJson(answer);
 }

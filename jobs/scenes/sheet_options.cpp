@@ -94,7 +94,8 @@ constexpr OptionRow sheetRows[] = {
     OptionRow{"up",
               spelled<UpAxes::parse, UpAxes::name, &SheetOptions::surfaces, &RenderOptions::up>,
               "The mesh's axis that points up"}
-        .takes({.words = UpAxes::words, .complete = true}),
+        .takes({.words = UpAxes::words, .complete = true})
+        .onlyFor(sheets::details),
     OptionRow{"view", spelled<viewIn, anglesText, &SheetOptions::surfaces, &RenderOptions::view>,
               "THETA,PHI: the direction to the viewer, degrees from the zenith and from +x towards "
               "+y"}
@@ -122,11 +123,13 @@ constexpr OptionRow sheetRows[] = {
         .inPython("orders")
         .onlyFor(sheets::surfaces),
     OptionRow{"cosine", at<&SheetOptions::surfaces, &RenderOptions::cosine>,
-              "Coefficients of f cos(theta_i)"},
+              "Coefficients of f cos(theta_i)"}
+        .onlyFor(sheets::details),
     OptionRow{"outgoing", at<&SheetOptions::surfaces, &RenderOptions::outgoing>,
               "Outgoing directions of the coefficients, interpolated in between (default: 64 if "
               "isotropic, else 48x48)"}
-        .takes({.syntax = Syntax::outgoing}),
+        .takes({.syntax = Syntax::outgoing})
+        .onlyFor(sheets::details),
     OptionRow{"exposures", at<&SheetOptions::surfaces, &RenderOptions::exposures>,
               "Stops, a column each: -2,0,2 (default: 0)"}
         .within(stops)
@@ -137,7 +140,8 @@ constexpr OptionRow sheetRows[] = {
               "0.5% beside coefficients)"}
         .within(bounds::pictureTolerance)
         .in(Unit::percent)
-        .orNamed("error"),
+        .orNamed("error")
+        .onlyFor(sheets::details),
     OptionRow{"seconds", at<&SheetOptions::surfaces, &RenderOptions::seconds>,
               "End integration after that time with the best picture so far, after a first pass "
               "over all pixels to an error of 50% (default: no end)"}
@@ -149,6 +153,14 @@ constexpr OptionRow sheetRows[] = {
 
 OptionRows<SheetOptions> sheetOptions() {
     return {sheetRows};
+}
+
+void refuseDetail(std::string_view option) {
+    throw UsageError(
+        fmt::format("render: {} is not for spheres in point lights, but beside {}, {}, {}, {} or "
+                    "another light",
+                    option, Setting{"RenderOptions::mesh"}, Setting{"RenderOptions::by"},
+                    Setting{"RenderOptions::bases"}, Setting{"RenderOptions::orders"}));
 }
 
 std::variant<SphereSheetOptions, RenderOptions> sheetOf(const SheetOptions& asked, bool surface) {

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -16,17 +17,19 @@ namespace hshfit::jobs {
 /// The options of sheets of pictures: spheres under point lights, or surfaces under any light.
 struct SheetOptions {
     /// Specifications (light/catalog.h), and point lights about the line of sight,
-    /// "THETA,PHI[,STRENGTH]" in degrees; empty: those of SphereRig.
+    /// "THETA,PHI[,STRENGTH]" in degrees; empty: the lights of SphereRig.
     std::vector<std::string> light = {};
-    std::optional<double> dome = {};  ///< none: that of SphereRig with point lights alone, else 0
+    std::optional<double> dome = {};  ///< none: as SphereRig with point lights alone, else 0
     std::optional<std::size_t> samples = {};  ///< N: N x N a pixel; none: as each kind has it
     RenderOptions surfaces = {};              ///< the others, of spheres too where they have them
 };
 
-/// Kinds of sheets (OptionRow::inputs).
+/// Kinds of sheets (OptionRow::inputs), and details of surfaces, which do not ask for surfaces.
 namespace sheets {
-inline constexpr unsigned spheres = 1, surfaces = 2;
+inline constexpr unsigned spheres = 1, surfaces = 2, details = 4;
 }
+/// Refuses a detail that is given for spheres, by its name: throws UsageError.
+[[noreturn]] void refuseDetail(std::string_view option);
 
 OptionRows<SheetOptions> sheetOptions();
 

@@ -76,6 +76,14 @@ TEST_F(Cli, RenderRefusesInOneLine) {
     expectError("render lambert -o " + path("absent/s.png"), 5, "absent", 0);
 }
 
+TEST_F(Cli, RenderOfSpheresRefusesTheDetailsOfSurfaces) {
+    const std::string job = "render lambert --size 16 -o " + path("s.png");
+    for (const std::string option :
+         {" --cosine", " --outgoing 8", " --tolerance 10%", " --error 10%", " --up z"})
+        expectError(job + option, 2, "is not for spheres in point lights", 0);
+    EXPECT_EQ(run(job + " --light uniform --by integration --tolerance 10%").code, 0);
+}
+
 TEST_F(Cli, RenderComparesCoefficientsWithIntegration) {
     const std::string job =
         "render lambert:kd=.5 phong:exponent=8,ks=.5 --size 16 --samples 1 --light uniform "
@@ -240,6 +248,24 @@ TEST_F(Cli, CompareWritesAPage) {
                   .code,
               0);
     EXPECT_EQ(printed["metrics"], Json::parse(read(path("page/comparison.json")))["metrics"]);
+}
+
+TEST_F(Cli, CompareNamesAPresetAsItIsGivenAndStatesAReasonOnce) {
+    // Its square has no integral, so that relative-l2 and captured-energy have the same reason.
+    write("long.json",
+          R"({"format": "hshfit-preset", "version": 1, "model": "ward", "parameters": )"
+          R"({"kd": 0.0512345678901234, "ks": 0.312345678901234, "ax": 0.212345678901234, )"
+          R"("ay": 0.112345678901234}})");
+    const std::string own = run("info " + path("long.json")).out;
+    ASSERT_NE(own.find("ward:kd=0.0512345678901234,"), std::string::npos) << own;
+    const Answer answer = run("compare ggx:alpha=.3 " + path("long.json") + " --outgoing 4");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_EQ(answer.out.find("ward:"), std::string::npos) << answer.out;
+    const std::string reason = path("long.json") + " grows like";
+    const std::size_t first = answer.out.find(reason);
+    ASSERT_NE(first, std::string::npos) << answer.out;
+    EXPECT_EQ(answer.out.find(reason, first + 1), std::string::npos) << answer.out;
+    EXPECT_NE(answer.out.find("(as relative-l2)"), std::string::npos) << answer.out;
 }
 
 TEST_F(Cli, CompareFailsBeforeItWrites) {
