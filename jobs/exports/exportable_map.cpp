@@ -118,7 +118,7 @@ public:
             const bool normal = made.role == "normal";
             lines.push_back(
                 fmt::format("{}: {} bytes, {} by compression {:.3g} in the mean, {:.3g} at most{}",
-                            made.path, made.bytes, normal ? "degrees" : "error of a channel",
+                            made.path, made.bytes, normal ? "degrees" : "error",
                             normal ? degrees(made.meanError) : made.meanError,
                             normal ? degrees(made.largestError) : made.largestError,
                             normal ? "" : ", from 0 to 1"));

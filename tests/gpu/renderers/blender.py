@@ -22,36 +22,49 @@ for thing in scene.objects:
 
 
 
-def anisotropy(path):
-    """Strength and rotation of KHR_materials_anisotropy, which the importer leaves out."""
+def extensions(path):
+    """The extensions of a .glb's material."""
     data = open(path, "rb").read()
     text = data[20:20 + struct.unpack("<I", data[12:16])[0]]
-    extensions = json.loads(text)["materials"][0].get("extensions", {})
-    found = extensions.get("KHR_materials_anisotropy", {})
-    return found.get("anisotropyStrength", 0), found.get("anisotropyRotation", 0)
+    return json.loads(text)["materials"][0].get("extensions", {})
 
 
-def brush(material, strength, rotation):
-    """The Principled BSDF with glTF's two roughnesses: alpha + (1 - alpha) strength^2 along the
-    tangent, turned by the rotation, and alpha across it; Principled's are r^2 / aspect and r^2 aspect,
-    with aspect^2 = 1 - 0.9 anisotropic. The tangent runs along the parallels."""
-    tree = material.node_tree
-    shader = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
-    across = shader.inputs["Roughness"].default_value ** 2
-    along = across + (1 - across) * strength ** 2
-    shader.inputs["Roughness"].default_value = (along * across) ** 0.25
-    shader.inputs["Anisotropic"].default_value = min(1, (1 - across / along) / 0.9)
-    shader.inputs["Anisotropic Rotation"].default_value = rotation / (2 * math.pi) % 1
+def principled(material):
+    return next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
+
+
+def brush(material, found):
+    """Anisotropy, which the importer leaves out. glTF's two roughnesses are alpha + (1 - alpha) s^2
+    along the tangent, turned by the rotation, and alpha across it, s the strength; Principled's are
+    r^2 / aspect and r^2 aspect, with aspect^2 = 1 - 0.9 anisotropic. The tangent runs along the
+    parallels."""
+    tree, inputs = material.node_tree, principled(material).inputs
+    across = inputs["Roughness"].default_value ** 2
+    along = across + (1 - across) * found.get("anisotropyStrength", 0) ** 2
+    inputs["Roughness"].default_value = (along * across) ** 0.25
+    inputs["Anisotropic"].default_value = min(1, (1 - across / along) / 0.9)
+    turns = found.get("anisotropyRotation", 0) / (2 * math.pi)
+    inputs["Anisotropic Rotation"].default_value = turns % 1
     tangent = tree.nodes.new("ShaderNodeTangent")
     tangent.direction_type, tangent.axis = "RADIAL", "Z"
-    tree.links.new(tangent.outputs["Tangent"], shader.inputs["Tangent"])
+    tree.links.new(tangent.outputs["Tangent"], inputs["Tangent"])
 
 
-strength, rotation = anisotropy(words["glb"])
-if strength > 0:
-    for thing in scene.objects:
-        if thing.type == "MESH":
-            brush(thing.active_material, strength, rotation)
+def set_specular(material, found):
+    """The reflectance at normal incidence, 0.08 for Principled's specular of 1, where the importer
+    overlooks the factor beside an index of refraction."""
+    ior = found.get("KHR_materials_ior", {}).get("ior", 1.5)
+    factor = found.get("KHR_materials_specular", {}).get("specularFactor", 1)
+    reflectance = ((ior - 1) / (ior + 1)) ** 2 * factor
+    principled(material).inputs["Specular"].default_value = reflectance / 0.08
+
+
+found = extensions(words["glb"])
+for thing in scene.objects:
+    if thing.type == "MESH":
+        set_specular(thing.active_material, found)
+        if "KHR_materials_anisotropy" in found:
+            brush(thing.active_material, found["KHR_materials_anisotropy"])
 
 camera = bpy.data.objects.new("eye", bpy.data.cameras.new("eye"))
 camera.data.angle = math.radians(words["angle"])

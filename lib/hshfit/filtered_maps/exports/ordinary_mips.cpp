@@ -42,11 +42,35 @@ double normalError(const BlockTexel& found, const BlockTexel& wanted) {
     return std::acos(std::clamp(dot(normalOf(found), normalOf(wanted)), -1.0, 1.0));
 }
 
-double channelError(const BlockTexel& found, const BlockTexel& wanted) {
-    double largest = 0;
-    for (std::size_t c = 0; c < 4; ++c)
-        largest = std::max(largest, std::abs(static_cast<double>(found[c] - wanted[c])));
-    return largest;
+double roughnessError(const BlockTexel& found, const BlockTexel& wanted) {
+    return std::abs(static_cast<double>(found[1] - wanted[1]));
+}
+
+/// Of the strength, or of the direction's part across the right one times the strength.
+double anisotropyError(const BlockTexel& found, const BlockTexel& wanted) {
+    const double x = 2 * static_cast<double>(found[0]) - 1,
+                 y = 2 * static_cast<double>(found[1]) - 1,
+                 along = 2 * static_cast<double>(wanted[0]) - 1,
+                 aside = 2 * static_cast<double>(wanted[1]) - 1;
+    const double length = std::hypot(x, y);
+    const double across = length > 0 ? std::abs(x * aside - y * along) / length : 1;
+    return std::max(std::abs(static_cast<double>(found[2] - wanted[2])),
+                    static_cast<double>(wanted[2]) * across);
+}
+
+/// A direction and its opposite are the same: each texel takes that nearer to the common axis, so
+/// that blocks and filters seldom mix opposites.
+void alignDirections(std::vector<OrdinaryTexel>& texels) {
+    double x = 0, y = 0;
+    for (const OrdinaryTexel& texel : texels) {
+        const auto& [c, s] = texel.direction;
+        x += texel.strength() * (c * c - s * s);
+        y += texel.strength() * 2 * c * s;
+    }
+    const double angle = std::atan2(y, x) / 2;
+    for (OrdinaryTexel& texel : texels)
+        if (texel.direction[0] * std::cos(angle) + texel.direction[1] * std::sin(angle) < 0)
+            texel.direction = {-texel.direction[0], -texel.direction[1]};
 }
 
 struct Kind {
@@ -128,10 +152,11 @@ std::vector<OrdinaryMips> writeOrdinaryMips(const FilteredMap& map, const std::s
                 texels.push_back(ordinaryTexel(map.numbers(level, column, row)));
                 brushed = brushed || texels.back().strength() > leastStrength;
             }
+        alignDirections(texels);
     }
     const Kind kinds[] = {{"normal", Blocks::bc5, normalTexel, normalError},
-                          {"roughness", Blocks::bc7, roughnessTexel, channelError},
-                          {"anisotropy", Blocks::bc7, anisotropyTexel, channelError}};
+                          {"roughness", Blocks::bc7, roughnessTexel, roughnessError},
+                          {"anisotropy", Blocks::bc7, anisotropyTexel, anisotropyError}};
     std::vector<OrdinaryMips> made;
     for (const Kind& kind : std::span(kinds).first(brushed ? 3 : 2))
         made.push_back(written(kind, map, levels, name, files));

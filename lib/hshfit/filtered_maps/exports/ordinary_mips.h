@@ -28,8 +28,8 @@ struct OrdinaryTexel {
 /// `numbers` are those of MipLayout, with moments.
 OrdinaryTexel ordinaryTexel(std::span<const double> numbers);
 
-/// A written file, with the largest error of its compression over all levels: of normals in
-/// radians, of other channels from 0 to 1.
+/// A written file, with the errors of its compression over all levels: of normals in radians, of
+/// roughness, of the strength or the strength times the sine of the direction's angle.
 struct OrdinaryMips {
     std::string role, path;
     std::size_t bytes = 0;
