@@ -2,12 +2,12 @@
 """filament_kernel.py FOLDER [SIZE]: the kernels of the levels that Filament's cmgen prefilters.
 
 cmgen (Debian's libfilament-tools) filters pictures with one narrow spot to cubes of SIZE texels,
-256 if not given. Coefficients of each level in Legendre polynomials about the spot, over those of level
-0, are those of the level's kernel, looked up with a filter. Prints the table of
+256 if not given. Coefficients of each level in Legendre polynomials about the spot, over those of
+level 0, are those of the level's kernel, looked up with a filter. Prints the table of
 docs/explanation/prefiltered.md: for each level its roughness; for a spot in the middle of a face,
 between and at a corner the light that is left, and the largest difference of 32 coefficients from
-the kernel that `--engine filament` reckons with, both being 1 in band 0; the roughness whose kernel
-is nearest.
+the kernel that `--engine filament` reckons with, both being 1 in band 0; the roughness whose
+kernel is nearest.
 """
 
 import struct

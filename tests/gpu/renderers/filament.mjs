@@ -14,7 +14,7 @@ function polynomial(radiance) {
 }
 
 // In the page, z up: float pixels from the bottom row on, as Base64. The canvas has 8 bits, so that
-// pictures under light of four strengths are put together.
+// pictures under light of eight strengths are put together.
 async function draw({ kind, side, eye, angle, towards, irradiance, glb, compiled, ball, cube, levels, bands }) {
   Object.assign(window, window.glMatrix);
   await new Promise((resolve) => Filament.init([...(glb ? [glb] : [compiled, ball]), ...(cube ? [cube] : [])], resolve));
@@ -88,7 +88,7 @@ async function draw({ kind, side, eye, angle, towards, irradiance, glb, compiled
   const result = new Float32Array(4 * side * side);
   const gl = canvas.getContext('webgl2'),
     bytes = new Uint8Array(4 * side * side);
-  for (const exposure of [0.002, 0.02, 0.2, 1]) {
+  for (const exposure of [0.002, 0.005, 0.0125, 0.03, 0.08, 0.2, 0.5, 1]) {
     dim(exposure);
     for (let k = 0; k < 3; ++k) {
       renderer.render(chain, view);

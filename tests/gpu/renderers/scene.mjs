@@ -177,9 +177,9 @@ export function judged(engine, { name, kind, given }, expected, found) {
     `${[engine, name, kind, given].join(', ').padEnd(44)} relative L2 ${percent(whole.l2)}; ` +
       `against what it was given ${percent(own.l2)}, gain ${own.gain.toFixed(3)}`,
   );
-  // Direct light is evaluated, and differs by the mesh, the samples and single precision alone;
-  // light from all around is looked up.
-  if (given === 'ours') expect(own.l2 < (kind === 'direct' ? 0.02 : 0.2), `${engine}, ${name}, ${kind} differs`);
+  // Direct light is evaluated, and differs by the mesh, the samples and single precision alone, most in narrow
+  // highlights; light from all around is looked up.
+  if (given === 'ours') expect(own.l2 < (kind === 'direct' ? 0.05 : 0.2), `${engine}, ${name}, ${kind} differs`);
   return { expected: expected.source, found: seen };
 }
 
