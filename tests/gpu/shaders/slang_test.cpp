@@ -1,12 +1,14 @@
-// Slang modules: their differentiable functions, and what slang_rules.h finds. That they run as
-// HLSL is held where the other languages are.
+// Slang modules: their differentiable functions, what slang_rules.h finds, and those of lighting as
+// HLSL. That the others run as HLSL is held where the other languages are.
 #include "../forms/form_samples.h"
+#include "runners.h"
 #include "slang_rules.h"
 #include "variants.h"
 
 #include <hshfit/error.h>
 #include <hshfit/gpu/forms/form_shader.h>
 #include <hshfit/gpu/slang.h>
+#include <hshfit/lighting/lighting_shader.h>
 
 #include <gtest/gtest.h>
 
@@ -56,6 +58,51 @@ TEST(Slang, BreachesAreFound) {
         const std::string broken = std::regex_replace(text, std::regex(from), to);
         EXPECT_NE(broken, text) << from;
         EXPECT_FALSE(breachesOf(broken).empty()) << from;
+    }
+}
+
+/// A compute shader around a lighting module without Slang's words, with the registers that it
+/// needs.
+std::string lightingProgram(const lighting::LightingShader& shader, const std::string& call) {
+    std::string text = moduleAsHlsl(lighting::lightingShaderSource(Language::slang, shader));
+    text =
+        std::regex_replace(text, std::regex(R"((Texture2D<float4> \w+);)"), "$1 : register(t0);");
+    text =
+        std::regex_replace(text, std::regex(R"((TextureCube<float4> \w+);)"), "$1 : register(t2);");
+    return text +
+           "RWStructuredBuffer<float4> result : register(u4);\n"
+           "[numthreads(1, 1, 1)]\n"
+           "void main(uint3 id : SV_DispatchThreadID) {\n"
+           "    float3 n = float3(0.0, 0.0, 1.0), wo = normalize(float3(id.x, 1.0, 2.0)), "
+           "light[9];\n"
+           "    for (int k = 0; k < 9; ++k) light[k] = n;\n"
+           "    result[id.x] = float4(" +
+           call + ", 1.0);\n}\n";
+}
+
+TEST(Slang, LightingModulesKeepTheRulesAndCompileAsHlsl) {
+    using Kind = lighting::LightingShader::Kind;
+    const std::pair<Kind, std::string> models[] = {
+        {Kind::coefficients, "hsh_coefficients(n, wo, light)"},
+        {Kind::splitSum, "hsh_splitSum(n, wo, light)"},
+        {Kind::cosines, "hsh_ltc(n, wo, n, wo, -n, -wo)"},
+        {Kind::prefiltered, "hsh_prefiltered(n, wo)"}};
+    for (const auto& [kind, call] : models) {
+        lighting::LightingShader shader;
+        shader.kind = kind;
+        shader.order = 3;
+        shader.levels = 6;
+        shader.engine = &lighting::prefilterNamed("three");
+        shader.lobes = 2;
+        shader.texels = 5;
+        try {
+            EXPECT_FALSE(toSpirv(Language::hlsl, lightingProgram(shader, call)).empty()) << call;
+            EXPECT_THROW(toSpirv(Language::hlsl, lightingProgram(shader, "nothing(n)")), Refused);
+        } catch (const Missing& missing) {
+            GTEST_SKIP() << missing.what();
+        } catch (const Refused& refused) {
+            ADD_FAILURE() << call << ": " << refused.what();
+        }
     }
 }
 
