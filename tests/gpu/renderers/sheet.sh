@@ -1,7 +1,8 @@
 #!/bin/sh
 # sheet.sh FOLDER SHEET.png: of the sheets that the trials wrote into FOLDER three cuts each, one
 # line below another (needs oiiotool): three.js, Babylon.js, PlayCanvas and Filament with our
-# material, Blender with the glTF fit, Godot 3 with our shader and, in the environment, with the fit.
+# material, Blender with the glTF fit, Godot 3 with our shader and, in the environment, with the
+# fit.
 set -eu
 folder=$1
 sheet=$2
