@@ -4,6 +4,7 @@
 #include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
 #include <hshfit/files/checksum.h>
+#include <hshfit/material_library/internal/rounding_errors.h>
 #include <hshfit/material_library/log_terms.h>
 #include <hshfit/pictures/picture_error.h>
 #include <hshfit/representation/forms/represented_brdf.h>
@@ -49,6 +50,60 @@ FormError errorAgainst(const Measured& measured, const LogMaterial& stored, cons
     if (source) return errorBetween(*source, form, seen);
     return sumOf(measured.error,
                  errorBetween(LogBrdf(measured.material(), measured.name), form, seen));
+}
+
+/// A material with its codes, but for its error.
+Material coded(const Encoder& encoder, const Measured& measured, std::size_t components) {
+    Material material{
+        .name = measured.name, .source = measured.source, .channels = measured.channels()};
+    material.codes = encoder.encode(measured.material(), components);
+    material.bytes = material.codes.size();
+    return material;
+}
+
+/// Makes it a polynomial where its error is beyond the limits.
+void fallBack(Material& material, const Limits& limits, const Measured& measured,
+              const Brdf* source) {
+    material.fallback = beyond(material.error, limits);
+    if (material.fallback.empty()) return;
+    material.fallback += " in the basis";
+    material.kind = Kind::polynomial;
+    material.codes.clear();
+    material.polynomial = rounded(measured.material());
+    material.bytes = material.polynomial.bytes();
+    material.error = errorAgainst(measured, material.polynomial, source, limits.pictures());
+}
+
+/// Materials that go through RoundingErrors together.
+constexpr std::size_t together = 16;
+
+/// The measured materials of a library as it stores them.
+std::vector<Material> storedMaterials(const Library& library, const LogSpace& space,
+                                      const std::vector<Measured>& measured) {
+    std::vector<Material> materials(measured.size());
+    const Encoder encoder(library.basis, space);
+    const RoundingErrors errors(library.basis);
+    eachInParallel((measured.size() + together - 1) / together, [&](std::size_t part) {
+        const std::size_t first = part * together,
+                          last = std::min(first + together, measured.size());
+        std::vector<RoundedMaterial> rounded;
+        for (std::size_t m = first; m < last; ++m) {
+            materials[m] = coded(encoder, measured[m], library.basis.size());
+            rounded.push_back({measured[m], materials[m].codes});
+        }
+        const std::vector<FormError> found = errors.of(rounded);
+        for (std::size_t m = first; m < last; ++m) {
+            FormError error = found[m - first];
+            if (library.limits.pictures())
+                error.flip = pictureError(LogBrdf(measured[m].material(), measured[m].name),
+                                          LogBrdf(decode(library.basis, materials[m].codes),
+                                                  measured[m].name))
+                                 .flip.mean;
+            materials[m].error = sumOf(measured[m].error, error);
+            fallBack(materials[m], library.limits, measured[m], nullptr);
+        }
+    });
+    return materials;
 }
 
 template <class Row>
@@ -107,21 +162,10 @@ Material withHalfway(const Brdf& brdf, const std::string& name, const std::strin
 
 Material encode(const Library& library, const LogSpace& space, const Measured& measured,
                 std::size_t components, const Brdf* source) {
-    Material material{
-        .name = measured.name, .source = measured.source, .channels = measured.channels()};
-    const Encoder encoder(library.basis, space);
-    material.codes = encoder.encode(measured.material(), components);
-    material.bytes = material.codes.size();
-    const bool seen = library.limits.pictures();
-    material.error = errorAgainst(measured, decode(library.basis, material.codes), source, seen);
-    material.fallback = beyond(material.error, library.limits);
-    if (material.fallback.empty()) return material;
-    material.fallback += " in the basis";
-    material.kind = Kind::polynomial;
-    material.codes.clear();
-    material.polynomial = rounded(measured.material());
-    material.bytes = material.polynomial.bytes();
-    material.error = errorAgainst(measured, material.polynomial, source, seen);
+    Material material = coded(Encoder(library.basis, space), measured, components);
+    material.error = errorAgainst(measured, decode(library.basis, material.codes), source,
+                                  library.limits.pictures());
+    fallBack(material, library.limits, measured, source);
     return material;
 }
 
@@ -133,11 +177,7 @@ Library learn(const LogSpace& space, std::vector<Measured> measured, std::vector
     library.basis = basis.basis;
     library.unseen = basis.unseen;
     library.unseenFlip = basis.unseenFlip;
-    library.materials.resize(measured.size());
-    errorPairs();
-    eachInParallel(measured.size(), [&](std::size_t m) {
-        library.materials[m] = encode(library, space, measured[m], library.basis.size());
-    });
+    library.materials = storedMaterials(library, space, measured);
     std::ranges::move(own, std::back_inserter(library.materials));
     std::ranges::sort(library.materials, {}, &Material::name);
     requireUnique(library.materials);
