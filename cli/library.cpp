@@ -82,6 +82,7 @@ void printLearned(const jobs::LearnedLibrary& learned, const LibraryArguments& a
         document["unseen"] = {{"log", library.unseen}, {"flip", library.unseenFlip}};
         document["doubted"] = learned.basis.doubted;
         document["fallbacks"] = fallbacks;
+        if (!learned.leftOut.empty()) document["left_out"] = learned.leftOut;
         return printJson(document);
     }
     std::string text =
@@ -98,6 +99,9 @@ void printLearned(const jobs::LearnedLibrary& learned, const LibraryArguments& a
                             library.basis.size());
     if (!fallbacks.empty())
         text += fmt::format("  forms of their own: {}\n", fmt::join(fallbacks, ", "));
+    if (!learned.leftOut.empty())
+        text += fmt::format("  left out, since the time was over: {}\n",
+                            fmt::join(learned.leftOut, ", "));
     if (learned.basis.doubted > 0)
         text += fmt::format("  {} unlike the others, counted for less\n", learned.basis.doubted);
     printText(text);

@@ -75,6 +75,11 @@ constexpr OptionRow libraryRows[] = {
               "learn: a library whose materials come first"}
         .takes({.files = Files::read, .dash = ""})
         .onlyFor(of::learn | of::add),
+    OptionRow{"seconds", at<&LibraryOptions::learn, &LearnLibraryOptions::seconds>,
+              "learn: end the reading of materials after that time, and learn from those that were "
+              "read by then"}
+        .within(bounds::seconds)
+        .onlyFor(of::learn | of::add),
     OptionRow{"final", at<&LibraryOptions::learn, &LearnLibraryOptions::final>,
               "learn, merge: without what adding and merging need"}
         .onlyFor(of::learn | of::add | of::merge),

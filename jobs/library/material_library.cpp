@@ -8,6 +8,7 @@
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/material_library/library_file.h>
 #include <hshfit/specification/parameters.h>
+#include <hshfit/time_limit.h>
 #include <hshfit/wording.h>
 
 #include <brdfs/catalog.h>
@@ -62,12 +63,16 @@ Entry entryOf(const ml::LogSpace& space, const std::string& spec, const ml::Limi
     return entry;
 }
 
+/// Those of a material for which the time is over are empty.
 std::vector<Entry> entriesOf(const ml::LogSpace& space, const std::vector<std::string>& specs,
-                             const ml::Limits& limits, const Listener& listener) {
+                             const ml::Limits& limits, const TimeLimit& time,
+                             const Listener& listener) {
+    constexpr std::size_t always = 2;  // a basis is learned from two
     ml::errorPairs();
     std::vector<Entry> entries(specs.size());
     const std::vector<InputFailure> failures =
         forEachInput(specs, listener, "learn", [&](std::size_t i, const ProgressCall& progress) {
+            if (i >= always && time.isOver()) return;
             if (progress) progress(0, 1);
             entries[i] = entryOf(space, specs[i], limits);
             if (progress) progress(1, 1);
@@ -131,6 +136,7 @@ std::string materialName(const std::string& spec) {
 LearnedLibrary learnLibrary(const std::vector<std::string>& specs, const std::string& output,
                             const LearnLibraryOptions& asked, const Listener& listener) {
     LearnLibraryOptions options = asked;
+    const TimeLimit time(options.seconds);
     std::vector<ml::Measured> measured;
     std::vector<ml::Material> own;
     if (!options.addTo.empty()) {
@@ -140,11 +146,22 @@ LearnedLibrary learnLibrary(const std::vector<std::string>& specs, const std::st
         take(std::move(before), options.addTo, measured, own);
     }
     const ml::LogSpace space;
-    for (Entry& entry : entriesOf(space, expandInputs(specs), options.limits, listener)) {
-        if (entry.measured) measured.push_back(std::move(*entry.measured));
-        if (entry.own) own.push_back(std::move(*entry.own));
+    const std::vector<std::string> inputs = expandInputs(specs);
+    std::vector<Entry> entries = entriesOf(space, inputs, options.limits, time, listener);
+    std::vector<std::string> leftOut;
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+        if (!entries[i].measured && !entries[i].own) leftOut.push_back(inputs[i]);
+        if (entries[i].measured) measured.push_back(std::move(*entries[i].measured));
+        if (entries[i].own) own.push_back(std::move(*entries[i].own));
     }
-    return learnFrom(space, std::move(measured), std::move(own), options, output);
+    if (!leftOut.empty())
+        listener.say(
+            fmt::format("the time was over after {} of {} materials; {} is the first that "
+                        "is left out",
+                        inputs.size() - leftOut.size(), inputs.size(), leftOut.front()));
+    LearnedLibrary learned = learnFrom(space, std::move(measured), std::move(own), options, output);
+    learned.leftOut = std::move(leftOut);
+    return learned;
 }
 
 LearnedLibrary mergeLibraries(const std::vector<std::string>& paths, const std::string& output,

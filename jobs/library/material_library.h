@@ -17,17 +17,21 @@ struct LearnLibraryOptions {
     material_library::Limits limits = {};
     std::string addTo = {};  ///< a library whose materials come first; its options count
     bool final = false;      ///< without what adding and merging need
+    /// After that time no further material is read; two always are.
+    std::optional<double> seconds = {};
 };
 
 struct LearnedLibrary {
     material_library::Library library;
     material_library::LearnedBasis basis;
+    std::vector<std::string> leftOut = {};  ///< specifications that the time was not enough for
 };
 
 /// Learns a library from specifications, files and folders of files, and writes it; names are
 /// nameOf(spec) with '_' for what a name may not have. Materials that the terms of libraries do not
 /// hold within the limits, and anisotropic ones, keep halfway forms. Nothing is written where one
-/// of the materials cannot be read. Throws InputError, UsageError, NumericError and OutputError.
+/// of the materials that are read cannot be. Throws InputError, UsageError, NumericError and
+/// OutputError.
 LearnedLibrary learnLibrary(const std::vector<std::string>& specs, const std::string& output,
                             const LearnLibraryOptions& options, const Listener& listener = {});
 

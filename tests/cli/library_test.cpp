@@ -280,6 +280,28 @@ TEST_F(LibraryCommand, ABasisThatChangedIsNotUsed) {
     EXPECT_NE(changed.err.find("another basis"), std::string::npos) << changed.err;
 }
 
+TEST_F(LibraryCommand, LearnsFromTheMaterialsThatTheTimeIsEnoughFor) {
+    // The limit is over before the third.
+    const Answer made = run("library learn" + words(0, 8) + " --components 2 --seconds 0.01" +
+                            free + " -o " + path("a.library") + " --json");
+    ASSERT_EQ(made.code, 0) << made.err;
+    EXPECT_TRUE(keepsSchema(made.out, "library"));
+    const Json document = Json::parse(made.out);
+    const std::size_t learned = document["materials"], left = document["left_out"].size();
+    EXPECT_GE(learned, 2u);
+    EXPECT_GE(left, 1u);
+    EXPECT_EQ(learned + left, 8u);
+    const std::string said =
+        "the time was over after " + std::to_string(learned) + " of 8 materials";
+    EXPECT_NE(made.err.find(said), std::string::npos) << made.err;
+    // Those that were read are a library to which the others are added.
+    std::string rest = "learn";
+    for (const Json& spec : document["left_out"]) rest += " '" + spec.get<std::string>() + "'";
+    answer(rest + " --add-to " + path("a.library") + " -o " + path("b.library"));
+    answer("learn" + words(0, 8) + " --components 2" + free + " -o " + path("c.library"));
+    EXPECT_EQ(read(path("b.library")), read(path("c.library")));
+}
+
 TEST_F(LibraryCommand, SearchFindsTheMaterialItself) {
     learn("a.library");
     const Json found = answer("search " + path("a.library") + " '" + materials[4] + "' --count 3");
