@@ -7,6 +7,7 @@
 
 #include <hshfit/filtered_maps/filtered_sidecar.h>
 #include <hshfit/gpu/error_split.h>
+#include <hshfit/library_maps/library_sidecar.h>
 #include <hshfit/light/catalog.h>
 #include <hshfit/pages/picture_error_json.h>
 #include <hshfit/wings.h>
@@ -199,7 +200,7 @@ Json document(const jobs::Exported& exported, const std::string& folder) {
 }
 
 bool isMap(const std::string& input) {
-    return isMapSidecar(input) || isFilteredSidecar(input);
+    return isMapSidecar(input) || isFilteredSidecar(input) || isLibrarySidecar(input);
 }
 
 /// A kind of export (OptionRow::inputs) as messages name it.
@@ -232,13 +233,15 @@ void requireOptions(const CLI::App& command, const ExportArguments& arguments, u
                                      std::ranges::find(kinds, kind, &Kind::bit)->name));
     }
     if (kind != jobs::exports::maps) return;
-    const auto filtered = std::ranges::find_if(arguments.inputs, isFilteredSidecar);
+    const auto filtered = std::ranges::find_if(arguments.inputs, [](const std::string& input) {
+        return isFilteredSidecar(input) || isLibrarySidecar(input);
+    });
     for (const char* name : {"--light", "--environment-order"})
         if (filtered != arguments.inputs.end() && command.get_option(name)->count() > 0)
-            throw UsageError(
-                fmt::format("export: {}: {} is a map of filtered lobes, which take no light of an "
-                            "environment",
-                            name, *filtered));
+            throw UsageError(fmt::format(
+                "export: {}: {} is a map {}, which take no light of an environment", name,
+                *filtered,
+                isLibrarySidecar(*filtered) ? "of materials in a library" : "of filtered lobes"));
 }
 
 /// The options of textures that maps share.

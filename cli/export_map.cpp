@@ -36,6 +36,10 @@ Json mapDocument(const jobs::ExportedMap& exported, const std::string& folder) {
     if (!map.basis.empty()) document["basis"] = map.basis;
     if (!map.model.empty()) document["model"] = map.model;
     if (map.order > 0) document["order"] = map.order;
+    if (map.components > 0) {
+        document["components"] = map.components;
+        document["table_error"] = map.tableError;
+    }
     if (!map.outgoing.empty()) document["outgoing"] = map.outgoing;
     document["files"] = files;
     for (const gpu::ViewerLight& light : exported.lights) {

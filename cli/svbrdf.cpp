@@ -87,18 +87,32 @@ std::string levelText(const jobs::Svbrdf& done, std::size_t level) {
             percent(check.stored, 2), percent(check.storedMaximum, 2), percent(check.parameters, 2),
             percent(check.parametersMaximum, 2));
     }
-    if (!done.levelPairs.empty()) {
+    if (level < done.levelPairs.size()) {
         const jobs::TexelPairErrors& pairs = done.levelPairs[level];
-        text += fmt::format("; materials: log error {:.2g}, {:.2g} at most at ({}, {})",
-                            pairs.meanLog, pairs.worstLog, pairs.worstAt.column, pairs.worstAt.row);
+        text += fmt::format("; {}: log error {:.2g}, {:.2g} at most at ({}, {})",
+                            done.library ? "texels" : "materials", pairs.meanLog, pairs.worstLog,
+                            pairs.worstAt.column, pairs.worstAt.row);
     }
     return text + "\n";
 }
 
+std::string textOf(const jobs::MapLibrary& library) {
+    std::string text = library.given.empty()
+                           ? fmt::format("library of {} texels of the map", library.materials)
+                           : fmt::format("library {}", library.given);
+    if (library.pictures > 0) {
+        text += fmt::format("; spheres of {} texels: FLIP {:.3f}, {:.3f} at most at ({}, {})",
+                            library.pictures, library.flip, library.worstFlip,
+                            library.worstAt.column, library.worstAt.row);
+    }
+    if (!library.poor.empty()) text += "; poor: " + library.poor;
+    return text + "\n";
+}
+
 std::string textOf(const jobs::Svbrdf& done) {
-    std::string text =
-        fmt::format("{}: {} x {} texels of {}, {} outgoing directions", done.description,
-                    done.width, done.height, done.model, done.outgoing);
+    std::string text = fmt::format("{}: {} x {} texels of {}", done.description, done.width,
+                                   done.height, done.model);
+    if (!done.outgoing.empty()) text += fmt::format(", {} outgoing directions", done.outgoing);
     if (!done.lobes.empty()) text += fmt::format("; lobes {}", fmt::join(done.lobes, ", "));
     if (!done.axes.empty()) {
         text += fmt::format(" at {} nodes over {}, error {}", done.tableNodes,
@@ -121,10 +135,12 @@ std::string textOf(const jobs::Svbrdf& done) {
             better.empty() ? "" : "; better: " + better);
     }
     if (done.choices.size() > 1 || done.choices.front().pairs) text += choicesText(done.choices);
-    text +=
-        fmt::format("{}{}, {:.4g} MB, {:.1f} s ({:.3g} texels a second; the bare kernel {:.3g})\n",
-                    done.form, done.count > 0 ? fmt::format(" {}", done.count) : "",
-                    megabytes(done.bytes), done.seconds, done.rate, done.kernelRate);
+    if (done.library) text += textOf(*done.library);
+    text += fmt::format(
+        "{}{}, {:.4g} MB, {:.1f} s ({:.3g} texels a second{})\n", done.form,
+        done.count > 0 ? fmt::format(" {}", done.count) : "", megabytes(done.bytes), done.seconds,
+        done.rate,
+        done.kernelRate > 0 ? fmt::format("; the bare kernel {:.3g}", done.kernelRate) : "");
     for (std::size_t level = 0; level < done.levels.size(); ++level) text += levelText(done, level);
     std::size_t materials = 0;
     for (const std::string& file : done.files) {
@@ -194,7 +210,7 @@ void addSvbrdf(CLI::App& command, Globals& globals) {
     command
         .add_option("-o,--output", arguments->output,
                     "Folder for material.ktx2, material.json, errors.png and, of harmonics, "
-                    "harmonics.ktx2, of halfway, the materials")
+                    "harmonics.ktx2, of halfway, the materials, of library, material.library")
         ->required();
     addOptions(command, jobs::mapOptions(), arguments->options);
     command.callback([arguments, &command, &globals] { runSvbrdf(*arguments, command, globals); });

@@ -65,8 +65,18 @@ for form in outgoing low-rank "clusters --clusters 32" "halfway --clusters 2 --h
     done
 done
 
-# Forms of turned texels: the choice by measurement, measured levels, and their picture.
+# Coordinates in a library, of fewer texels, which take longer.
 maps=$(dirname "$0")/../examples/maps
+in_library="--form library --components 3 --checks 2 --force"
+# shellcheck disable=SC2086
+"$alone" svbrdf "$maps/coin.json" -o "$work/library" $in_library --quiet >/dev/null
+for count in 2 4; do
+    # shellcheck disable=SC2086
+    ranks $count "$maps/coin.json" -o "$work/shared-library" $in_library >/dev/null
+    diff -r "$work/library" "$work/shared-library" || fail "library with $count processes"
+done
+
+# Forms of turned texels: the choice by measurement, measured levels, and their picture.
 # shellcheck disable=SC2086
 for call in "$work/turned.json --checks 8" \
     "$work/turned.json --form harmonics --harmonics 5 --checks 0" \

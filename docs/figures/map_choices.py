@@ -42,8 +42,17 @@ def choices(program, description, folder, more):
     return json.loads(answer.stdout)["choices"]
 
 
-def row(name, choice):
-    size = SIDE * SIDE * choice["bytes_per_texel"] + choice["shared_bytes"]
+def table_bytes(program, folder):
+    """The table of the functions of a map of the form library, as `export` writes it."""
+    answer = subprocess.run([program, "export", folder / "material.json", "-o", folder / "export",
+                             "--target", "ktx2", "--force", "--json", "--quiet"],
+                            check=True, capture_output=True, text=True)
+    return next(file["bytes"] for file in json.loads(answer.stdout)["files"]
+                if file["role"] == "functions")
+
+
+def row(name, choice, shared=None):
+    size = SIDE * SIDE * choice["bytes_per_texel"] + (shared or choice["shared_bytes"])
     error = choice["against_brdfs"]["log_error"]
     return f"| {name} | {size / 1e3:.3g} kB | {error['mean']:.2g} | {error['maximum']:.2g} |"
 
@@ -66,6 +75,10 @@ def main(program):
             for choice in found:
                 if (choice["form"], choice["count"]) in (("outgoing", 720), ("low-rank", 8)):
                     print(row(f"{choice['form']} {choice['count']}, order 9", choice))
+            for components in (3, 7, 11, 19):
+                choice, = choices(program, description, folder / "c",
+                                  ["--form", "library", "--components", str(components)])
+                print(row(f"library {components}", choice, table_bytes(program, folder / "c")))
 
 
 if __name__ == "__main__":

@@ -73,10 +73,8 @@ private:
         std::vector<LightSpecification> lights;
         if (!map_->takesLight()) {
             if (options_.lights.empty()) return lights;
-            throw UsageError(
-                fmt::format("{}: a map of filtered lobes takes no light of an "
-                            "environment",
-                            Setting{"ExportOptions::lights"}));
+            throw UsageError(fmt::format("{}: a map of this form takes no light of an environment",
+                                         Setting{"ExportOptions::lights"}));
         }
         for (const std::string& text : options_.lights) lights.push_back(parseLights(text));
         if (lights.empty() && hasViewer())

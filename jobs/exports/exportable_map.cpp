@@ -7,6 +7,7 @@
 #include <hshfit/filtered_maps/exports/filtered_sampler.h>
 #include <hshfit/filtered_maps/exports/filtered_shader.h>
 #include <hshfit/filtered_maps/exports/ordinary_mips.h>
+#include <hshfit/library_maps/exports/library_map_export.h>
 #include <hshfit/material_maps/exports/map_viewer.h>
 
 #include <fmt/format.h>
@@ -77,6 +78,56 @@ private:
 
     MaterialMap map_;
     Wrap wrap_;
+};
+
+class MapInLibrary final : public ExportableMap {
+public:
+    MapInLibrary(const std::string& path, Wrap wrap)
+        : map_(path), wrap_(wrap), functions_(tabledFunctions(map_)) {}
+
+    Facts facts() const override {
+        const LibrarySidecar& s = map_.sidecar();
+        return {.source = s.source,
+                .form = "library",
+                .levels = s.levels,
+                .layers = s.layout.layers(),
+                .number = s.number,
+                .components = s.layout.components,
+                .tableError = functions_.error.largest};
+    }
+    std::vector<MapTest> tests() const override {
+        return mapTests(map_.sidecar().levels,
+                        [&](const MapPlace& place, const Direction& wo, const Direction& wi) {
+                            return mapValue(map_, functions_, place, wrap_, wo, wi);
+                        });
+    }
+    std::vector<MapTextureFile> writeKtx2(const std::string& name, FileSet& files) const override {
+        return writeLibraryMapKtx2(map_, functions_, name, files);
+    }
+    std::vector<MapTextureFile> writeExr(const std::string&, FileSet&) const override {
+        throw UsageError("exr-parts are for OSL, in which a map of the form library has no shader");
+    }
+    std::string shader(gpu::Language language, const std::string& prefix, int) const override {
+        return libraryMapShader(language, map_, functions_, {.prefix = prefix, .wrap = wrap_});
+    }
+    bool takesLight() const override { return false; }
+    std::string viewer(const std::string& title, const std::vector<gpu::ViewerLight>&, int,
+                       std::span<const MapTest> tests) const override {
+        return libraryMapViewerPage(map_, functions_, wrap_, title, tests);
+    }
+    std::string sidecar(std::span<const MapTextureFile> textures,
+                        std::span<const MapTest> tests) const override {
+        return libraryMapExportText(map_, functions_, wrap_, textures, tests);
+    }
+    std::string testText(std::span<const MapTest> tests) const override {
+        return mapTestText(map_.sidecar().channels, "f in 1/sr", tests);
+    }
+    void checkIntact() const override { map_.checkIntact(); }
+
+private:
+    LibraryMap map_;
+    Wrap wrap_;
+    MapFunctions functions_;
 };
 
 class LobeMap final : public ExportableMap {
@@ -157,6 +208,7 @@ std::vector<std::string> ExportableMap::writeMips(const std::string& name, FileS
 }
 
 std::unique_ptr<ExportableMap> openExportable(const std::string& sidecar, Wrap wrap) {
+    if (isLibrarySidecar(sidecar)) return std::make_unique<MapInLibrary>(sidecar, wrap);
     if (isFilteredSidecar(sidecar)) return std::make_unique<LobeMap>(sidecar, wrap);
     return std::make_unique<CoefficientMap>(sidecar, wrap);
 }

@@ -24,6 +24,8 @@ public:
         std::vector<LevelSize> levels = {};
         std::size_t layers = 0;
         gpu::Number number = gpu::Number::float16;
+        std::size_t components = 0;  ///< of a library
+        double tableError = 0;       ///< the largest of ln(f + 0.001) by the table of its functions
     };
     virtual Facts facts() const = 0;
     virtual std::vector<MapTest> tests() const = 0;
@@ -47,8 +49,8 @@ public:
     virtual void checkIntact() const = 0;
 };
 
-/// Opens a map of coefficients or of filtered lobes. Throws UsageError for a form without a shader
-/// and InputError.
+/// Opens a map of coefficients, of filtered lobes or of coordinates in a library. Throws UsageError
+/// for a form without a shader and InputError.
 std::unique_ptr<ExportableMap> openExportable(const std::string& sidecar, Wrap wrap);
 
 }  // namespace hshfit::jobs

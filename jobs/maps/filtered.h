@@ -13,8 +13,8 @@
 namespace hshfit::jobs {
 
 /// Forms of textures of materials; the last three are those of filtered lobes.
-inline constexpr std::string_view mapForms[] = {"outgoing", "low-rank",  "clusters", "halfway",
-                                                "ellipse",  "harmonics", "filtered"};
+inline constexpr std::string_view mapForms[] = {"outgoing", "low-rank", "clusters",  "halfway",
+                                                "library",  "ellipse",  "harmonics", "filtered"};
 /// Whether a form is one of `filteredMap`, and not of `svbrdf`.
 bool isFilteredForm(std::string_view form);
 

@@ -45,6 +45,19 @@ Json jsonOf(const MapChoice& choice) {
     return json;
 }
 
+Json jsonOf(const MapLibrary& library) {
+    Json json = {{"given", library.given.empty() ? Json(nullptr) : Json(library.given)},
+                 {"materials", library.materials}};
+    if (library.pictures > 0)
+        json["flip"] = {{"texels", library.pictures},
+                        {"mean", library.flip},
+                        {"maximum", library.worstFlip},
+                        {"column", library.worstAt.column},
+                        {"row", library.worstAt.row}};
+    json["poor"] = library.poor.empty() ? Json(nullptr) : Json(library.poor);
+    return json;
+}
+
 Json levelsJson(const Svbrdf& done) {
     Json levels = Json::array();
     for (std::size_t level = 0; level < done.levels.size(); ++level) {
@@ -63,7 +76,7 @@ Json levelsJson(const Svbrdf& done) {
                 {"stored", {{"mean", check.stored}, {"maximum", check.storedMaximum}}},
                 {"parameters", {{"mean", check.parameters}, {"maximum", check.parametersMaximum}}}};
         }
-        if (!done.levelPairs.empty()) json["against_brdfs"] = jsonOf(done.levelPairs[level]);
+        if (level < done.levelPairs.size()) json["against_brdfs"] = jsonOf(done.levelPairs[level]);
         levels.push_back(std::move(json));
     }
     return levels;
@@ -121,6 +134,13 @@ nlohmann::ordered_json svbrdfJson(const Svbrdf& done) {
         {"seconds", {{"preparation", done.tableSeconds}, {"writing", done.seconds}}},
         {"texels_per_second", {{"written", done.rate}, {"kernel", done.kernelRate}}},
         {"files", done.files}};
+    if (done.timeIsOver) json["time_over"] = true;
+    if (done.library) {
+        // The library has no coefficients of a basis over directions.
+        for (const char* key : {"outgoing", "lobes", "table", "captured"}) json.erase(key);
+        json["texels_per_second"].erase("kernel");
+        json["library"] = jsonOf(*done.library);
+    }
     if (done.fit.texels > 0) {
         json["fit"] = {{"texels", done.fit.texels},
                        {"mean", done.fit.mean},

@@ -4,6 +4,8 @@
 
 namespace hshfit::jobs {
 
+namespace fs = std::filesystem;
+
 MapFiles::MapFiles(const std::string& folder, bool force, Processes& processes)
     : processes_(processes) {
     if (!processes.isFirst()) return;
@@ -18,7 +20,7 @@ void MapFiles::requireFree(const std::vector<std::string>& names) const {
 
 std::string MapFiles::texture(const std::string& name) {
     std::string path;
-    if (files_) path = std::filesystem::absolute(files_->add(name).temporaryPath()).string();
+    if (files_) path = fs::absolute(files_->add(name).temporaryPath()).string();
     processes_.broadcast(path);
     names_.push_back(name);
     return path;
@@ -27,6 +29,14 @@ std::string MapFiles::texture(const std::string& name) {
 void MapFiles::write(const std::string& name, std::string_view text) {
     if (files_) files_->write(name, text);
     names_.push_back(name);
+}
+
+std::string MapFiles::file(const std::string& name, const std::function<void(AtomicFile&)>& fill) {
+    std::string path;
+    if (files_) path = fs::absolute(files_->write(name, fill).temporaryPath()).string();
+    processes_.broadcast(path);
+    names_.push_back(name);
+    return path;
 }
 
 void MapFiles::writePart(const std::string& name, std::string_view text) {

@@ -3,6 +3,7 @@
 #include <hshfit/files/file_set.h>
 #include <hshfit/material_maps/processes.h>
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,6 +23,8 @@ public:
     /// Adds a texture, which processes write in place: its path until it is complete.
     std::string texture(const std::string& name);
     void write(const std::string& name, std::string_view text);
+    /// A file that the first process writes, closed: its path until all are complete.
+    std::string file(const std::string& name, const std::function<void(AtomicFile&)>& fill);
     /// One of many, which the sidecar names: it would not name them all itself.
     void writePart(const std::string& name, std::string_view text);
     /// Puts all in place; their names are returned.

@@ -1,5 +1,7 @@
 #include "map_forms.h"
 
+#include "map_processes.h"
+
 #include <hshfit/error.h>
 #include <hshfit/material_maps/cluster_encoder.h>
 #include <hshfit/material_maps/texel_errors.h>
@@ -40,6 +42,10 @@ std::unique_ptr<TexelEncoder> clustersFor(MapWork& work, const SvbrdfOptions& op
     for (const std::size_t clusters : counts) {
         if (clusters > std::max<std::size_t>(1024, options.clusters)) continue;
         const bool isAsked = clusters == options.clusters;
+        if (!isAsked && isOver(work.time, processes)) {
+            result.timeIsOver = true;
+            continue;
+        }
         const ClusterEncoder::Options asked{.clusters = clusters,
                                             .levels = isAsked ? result.levels.size() : 1,
                                             .progress = listener.part("clusters")};

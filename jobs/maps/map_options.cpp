@@ -1,5 +1,7 @@
 #include "map_options.h"
 
+#include "library_svbrdf.h"
+
 #include <jobs/common/option_words.h>
 
 #include <hshfit/representation/forms/form.h>
@@ -33,15 +35,19 @@ std::vector<Word> writesWords() {
 constexpr unsigned bitOf(std::string_view form) {
     return 1U << (std::ranges::find(mapForms, form) - std::begin(mapForms));
 }
-constexpr unsigned halfwayForm = bitOf("halfway"),
-                   sharedForms = bitOf("low-rank") | bitOf("clusters") | halfwayForm,
+constexpr unsigned halfwayForm = bitOf("halfway"), libraryForm = bitOf("library"),
+                   materialForms = bitOf("clusters") | halfwayForm,
+                   sharedForms = bitOf("low-rank") | materialForms,
                    texelForms = bitOf("outgoing") | sharedForms,
+                   commonFrameForms = texelForms | libraryForm,
                    harmonicForms = bitOf("harmonics") | bitOf("filtered");
 
 constexpr OptionRow mapOptionRows[] = {
     OptionRow{"form", at<&MapOptions::form>,
               "outgoing: all coefficients; low-rank: weights of shared shapes; clusters: the index "
-              "of a shared material; halfway: likewise, of a material in the halfway form. Of "
+              "of a shared material; halfway: likewise, of a material in the halfway form; "
+              "library: coordinates in a library of "
+              "materials. Of "
               "turned texels: ellipse or harmonics of the normals' distribution; filtered: the "
               "cheaper one within --error (default: filtered where the description has normals or "
               "directions, else outgoing)"}
@@ -75,7 +81,8 @@ constexpr OptionRow mapOptionRows[] = {
               "With --form low-rank or clusters: the largest relative error that shared shapes may "
               "leave in a sampled texel (default: 0.01); with --form filtered or harmonics: that "
               "of a level against samples (default: 0.1)"}
-        .within(bounds::mapError),
+        .within(bounds::mapError)
+        .onlyFor(sharedForms | harmonicForms),
     OptionRow{"harmonics", at<&MapOptions::harmonics>,
               "Order of the harmonics of --form harmonics, odd (default: 9, 17 or 33 by --error)"}
         .within(bounds::mapHarmonics)
@@ -87,23 +94,36 @@ constexpr OptionRow mapOptionRows[] = {
     OptionRow{"clusters", at<&MapOptions::texels, &SvbrdfOptions::clusters>,
               "Shared materials of --form clusters or halfway, of each level"}
         .within(bounds::mapClusters)
-        .onlyFor(texelForms),
+        .onlyFor(materialForms),
+    OptionRow{"library", at<&MapOptions::texels, &SvbrdfOptions::library>,
+              "A library of materials for --form library (default: learned from the map)"}
+        .takes({.files = Files::read, .dash = ""})
+        .onlyFor(libraryForm),
+    OptionRow{"components", at<&MapOptions::texels, &SvbrdfOptions::components>,
+              "Components of that library (default: 11 of one that is learned, all of a given one)"}
+        .within(Bounds<int>{1, 120})
+        .onlyFor(libraryForm),
     OptionRow{"mips", at<&MapOptions::texels, &SvbrdfOptions::mips>,
               "reflectance: levels of averaged reflectance; none: level 0 alone"}
         .takes({.words = mipsWords, .complete = true}),
     OptionRow{"checks", at<&MapOptions::texels, &SvbrdfOptions::checks>,
               "Texels of each level that are measured against the texels that they stand for"}
         .within(bounds::mapChecks),
+    OptionRow{"seconds", at<&MapOptions::texels, &SvbrdfOptions::seconds>,
+              "End the measuring of errors, and of forms that were not asked for, after that time; "
+              "the map is whole all the same"}
+        .within(bounds::seconds)
+        .onlyFor(commonFrameForms),
     OptionRow{"memory", at<&MapOptions::memory>,
               "MiB that bands of the map may take, of each process"}
         .within(bounds::mapMemory)
-        .onlyFor(texelForms),
+        .onlyFor(commonFrameForms),
     OptionRow{"writes", at<&MapOptions::texels, &SvbrdfOptions::pastPageCache>,
               "direct: texels go past the page cache, where the file system can; cached: through "
               "it, for a slow disk or files that are read at once"}
         .takes({.words = writesWords, .complete = true})
         .inPython("direct")
-        .onlyFor(texelForms),
+        .onlyFor(commonFrameForms),
     OptionRow{"force", at<&MapOptions::texels, &SvbrdfOptions::force>, "Replace existing files"},
 };
 
@@ -149,9 +169,10 @@ std::variant<Svbrdf, FilteredMapAnswer> makeMap(const std::string& description,
                             .force = options.force,
                             .checks = static_cast<int>(options.checks)},
                            listener);
+    options.memory = asked.memory << 20;
+    if (options.form == "library") return librarySvbrdf(description, folder, options, listener);
     options.halfway = parseHalfway(asked.halfway);
     options.error = asked.error.value_or(options.error);
-    options.memory = asked.memory << 20;
     return svbrdf(description, folder, options, listener);
 }
 

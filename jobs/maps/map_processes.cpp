@@ -1,5 +1,7 @@
 #include "map_processes.h"
 
+#include <string>
+
 namespace hshfit::jobs {
 namespace {
 
@@ -14,6 +16,12 @@ void shareMapsWith(Processes& processes) {
 Processes& processesOfMaps() {
     static Processes alone;
     return sharing ? *sharing : alone;
+}
+
+bool isOver(const TimeLimit& limit, Processes& processes) {
+    std::string over = limit.isOver() ? "yes" : "";
+    processes.broadcast(over);
+    return !over.empty();
 }
 
 }  // namespace hshfit::jobs

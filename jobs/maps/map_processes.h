@@ -1,6 +1,7 @@
 #pragma once
 
 #include <hshfit/material_maps/processes.h>
+#include <hshfit/time_limit.h>
 
 namespace hshfit::jobs {
 
@@ -22,5 +23,8 @@ auto together(const Work& work) {
         throw;
     }
 }
+
+/// Whether the time is over for the first process, and so for all.
+bool isOver(const TimeLimit& limit, Processes& processes);
 
 }  // namespace hshfit::jobs

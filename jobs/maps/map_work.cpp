@@ -21,13 +21,9 @@ TexelLayout layoutFor(const SvbrdfOptions& options, const ModelLobes& lobes, con
     return texelLayout(basis, outgoing, lobes.channels(), laws.mirrorSymmetric);
 }
 
-/// Throws UsageError for a description whose texels turn: coefficients of a common frame do not.
 const MaterialDescription& inOneFrame(const MaterialDescription& described) {
-    if (!described.normal && !described.direction) return described;
-    throw UsageError(
-        fmt::format("{}: turns its texels by \"{}\"; the form has to be filtered, "
-                    "ellipse or harmonics",
-                    described.file, described.normal ? "normal" : "direction"));
+    requireOneFrame(described);
+    return described;
 }
 
 Quantity quantityOf(const SvbrdfOptions& options) {
@@ -35,6 +31,14 @@ Quantity quantityOf(const SvbrdfOptions& options) {
 }
 
 }  // namespace
+
+void requireOneFrame(const MaterialDescription& described) {
+    if (!described.normal && !described.direction) return;
+    throw UsageError(
+        fmt::format("{}: turns its texels by \"{}\"; the form has to be filtered, "
+                    "ellipse or harmonics",
+                    described.file, described.normal ? "normal" : "direction"));
+}
 
 ModelTexels::ModelTexels(const MaterialDescription& described, const Basis& basis,
                          const SvbrdfOptions& options, Processes& processes,
@@ -50,7 +54,8 @@ ModelTexels::ModelTexels(const MaterialDescription& described, const Basis& basi
 
 MapWork::MapWork(const std::string& description, const SvbrdfOptions& options, Processes& processes,
                  const Listener& listener)
-    : described(readMaterialDescription(description)),
+    : time(options.seconds),
+      described(readMaterialDescription(description)),
       basis(bases::make(options.basis, options.order)),
       model(described.texels.empty()
                 ? std::make_unique<ModelTexels>(described, *basis, options, processes, listener)

@@ -7,6 +7,7 @@
 
 #include <hshfit/material_maps/lobe_texels.h>
 #include <hshfit/material_maps/map_sidecar.h>
+#include <hshfit/time_limit.h>
 
 #include <memory>
 #include <string>
@@ -17,6 +18,10 @@ namespace hshfit::jobs {
 inline constexpr const char* textureName = "material.ktx2";
 inline constexpr const char* sidecarName = "material.json";
 inline constexpr const char* pictureName = "errors.png";
+inline constexpr const char* libraryName = "material.library";
+
+/// Throws UsageError for a description whose texels turn: coefficients of a common frame do not.
+void requireOneFrame(const MaterialDescription& described);
 
 /// Texels of a model with parameter maps.
 struct ModelTexels {
@@ -42,6 +47,7 @@ struct MapWork {
     /// The head that texels of any form have, of the form outgoing.
     MapSidecar head(const SvbrdfOptions& options, const std::vector<LevelSize>& levels) const;
 
+    TimeLimit time;  ///< of SvbrdfOptions::seconds
     MaterialDescription described;
     std::unique_ptr<Basis> basis;
     std::unique_ptr<ModelTexels> model;

@@ -7,6 +7,7 @@
 #include "map_files.h"
 #include "map_forms.h"
 #include "map_processes.h"
+#include "map_texture.h"
 #include "map_work.h"
 
 #include <hshfit/each_in_parallel.h>
@@ -92,43 +93,6 @@ MapSidecar sidecarOf(const MapWork& work, const SvbrdfOptions& options, const Te
     return sidecar;
 }
 
-/// Errors as grey, white at the largest; on a logarithmic scale over three decades.
-std::string errorPicture(const MapWritten& written) {
-    float largest = 0;
-    for (const float error : written.pictureErrors) largest = std::max(largest, error);
-    RgbPicture picture{static_cast<int>(written.picture.width),
-                       static_cast<int>(written.picture.height)};
-    for (const float error : written.pictureErrors) {
-        const float shade =
-            largest > 0 ? std::max(0.0F, 1 + std::log10(std::max(error / largest, 1e-3F)) / 3) : 0;
-        picture.values.insert(picture.values.end(), 3, shade);
-    }
-    return rgbPng(picture, 0);
-}
-
-/// Writes the texture under its temporary name.
-MapWritten writeTexture(MapWork& work, TexelEncoder& encoder, const SvbrdfOptions& options,
-                        const std::string& path, Svbrdf& result, const Listener& listener) {
-    LevelFile texture(
-        path, encoder.number(), encoder.layers(), result.levels,
-        {.pairs = {{"hshfit:form", options.form}}, .pastPageCache = options.pastPageCache});
-    const std::size_t texelBytes = texture.bytesOfTexel() + encoder.linear() + sizeof(float);
-    const BandPlan plan = planBands(levelSizes(work.texels.width(), work.texels.height()),
-                                    texelBytes, options.memory / 3);
-    const auto start = Clock::now();
-    MapWritten written = writeMap(work.texels, encoder, texture, plan, processes(),
-                                  {.progress = listener.part("texels")});
-    work.checkIntact();
-    processes().meet();
-    result.seconds = secondsSince(start);
-    result.rate = static_cast<double>(work.texels.width() * work.texels.height()) / result.seconds;
-    result.errors = written.levels;
-    result.errors.resize(result.levels.size());  // the others have none
-    result.bytes = texture.bytes();
-    result.pastPageCache = texture.isPastPageCache();
-    return written;
-}
-
 /// The materials of the form halfway, with their errors at texels of every level.
 void addHalfway(MapWork& work, const MapForm& form, const SvbrdfOptions& options,
                 const MaterialMap& map, MapFiles& files, MapSidecar& sidecar, Svbrdf& result,
@@ -153,6 +117,7 @@ void addHalfway(MapWork& work, const MapForm& form, const SvbrdfOptions& options
     result.levelPairs.push_back(*result.choices.back().pairs);
     for (std::size_t level = 1; level < result.levels.size(); ++level) {
         constexpr std::size_t most = 4;  // each is a mean of many
+        if ((result.timeIsOver = isOver(work.time, processes()))) break;
         const PairChecks checks(work.model->maps, result.levels,
                                 spreadPlaces(result.levels, level, std::min(options.checks, most)),
                                 processes());
@@ -168,7 +133,9 @@ void write(MapWork& work, const MapForm& form, const SvbrdfOptions& options, Svb
     files.requireFree({textureName, sidecarName, pictureName});
     const std::string texture = files.texture(textureName);
     const MapWritten written =
-        writeTexture(work, *form.encoder, options, texture, result, listener);
+        writeTexture(work.texels, *form.encoder, options, texture, result, listener);
+    work.checkIntact();
+    processes().meet();
     // Materials of the last levels are known to the first process alone.
     std::string text;
     if (processes().isFirst())
@@ -184,7 +151,8 @@ void write(MapWork& work, const MapForm& form, const SvbrdfOptions& options, Svb
     }
     files.write(sidecarName, text);
     files.write(pictureName, processes().isFirst() ? errorPicture(written) : "");
-    if (work.model && options.checks > 0 && result.levels.size() > 1) {
+    result.timeIsOver = result.timeIsOver || isOver(work.time, processes());
+    if (work.model && options.checks > 0 && result.levels.size() > 1 && !result.timeIsOver) {
         result.checks = checkLevels(map, work.model->maps, work.model->lobes, work.model->kernel,
                                     {options.checks, processes()}, listener);
     }
@@ -246,6 +214,7 @@ Svbrdf made(const std::string& description, const std::string& folder, const Svb
     result.tableSeconds = secondsSince(start);
     measureKernel(work, result);
     write(work, form, options, result, listener);
+    sayTimeIsOver(result, listener);
     return result;
 }
 

@@ -16,7 +16,7 @@
 namespace hshfit::jobs {
 
 struct SvbrdfOptions {
-    std::string form = "outgoing";  ///< "outgoing", "low-rank", "clusters" or "halfway"
+    std::string form = "outgoing";  ///< "outgoing", "low-rank", "clusters", "halfway" or "library"
     std::string basis = "hsh";
     int order = 4;
     std::string outgoing;  ///< OutgoingSet::parse; empty: 8 elevations if isotropic, else 8x8
@@ -27,17 +27,26 @@ struct SvbrdfOptions {
     double error = 0.01;                ///< the largest error of a sampled texel, relative
     std::size_t clusters = 256;
     HalfwayOrders halfway = {8, 4, 3};  ///< of the shared materials of the form halfway
+    std::string library = {};           ///< of the form library; empty: learned from the map
+    std::size_t components = 0;  ///< of that library; 0: usualComponents, or all of a given one
     bool mips = true;
     bool force = false;
     std::size_t memory = std::size_t{1} << 30;  ///< bytes for bands, of each process
     bool pastPageCache = true;                  ///< texels go straight to the disk
     std::size_t samples = 32768;                ///< texels that shapes and clusters are made from
     std::size_t checks = 16;                    ///< texels of each level that are measured
+    /// After that time nothing more is measured: levels go without checks, and other numbers of
+    /// clusters are not tried.
+    std::optional<double> seconds = {};
 };
 
 /// At most so many of the texels of a level that are measured are also compared with their BRDFs
 /// over pairs of directions.
 inline constexpr std::size_t mostPairTexels = 16;
+
+/// Components of a library that is learned from a map: with the mean, three texels of four numbers
+/// for each channel.
+inline constexpr std::size_t usualComponents = 11;
 
 /// A form and its cost and error over sampled texels.
 struct MapChoice {
@@ -67,6 +76,17 @@ struct FitErrors {
     std::size_t column = 0, row = 0;  ///< of the maximum
 };
 
+/// The library of a map of that form.
+struct MapLibrary {
+    std::string given = {};     ///< empty: learned from the map
+    std::size_t materials = 0;  ///< that it was learned from
+    /// The picture error of a few texels of level 0: mean FLIP, in the mean, and the worst of them.
+    std::size_t pictures = 0;
+    double flip = 0, worstFlip = 0;
+    TexelPlace worstAt = {};
+    std::string poor = {};  ///< why the worst one is poor (poorReason); empty: it is not
+};
+
 struct Svbrdf {
     std::string description = {}, model = {}, folder = {};
     std::size_t width = 0, height = 0;
@@ -88,7 +108,9 @@ struct Svbrdf {
     std::vector<LevelSize> levels = {};
     std::vector<LevelErrors> errors = {};
     std::vector<LevelCheck> checks = {};
-    std::vector<TexelPairErrors> levelPairs = {};  ///< by level, of the form halfway
+    std::vector<TexelPairErrors> levelPairs = {};  ///< by level, of the forms halfway and library
+    std::optional<MapLibrary> library = {};        ///< of the form library
+    bool timeIsOver = false;  ///< SvbrdfOptions::seconds were: what is missing was not measured
     std::size_t bytes = 0;
     std::size_t processes = 1;
     bool pastPageCache = false;

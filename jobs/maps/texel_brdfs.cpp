@@ -31,6 +31,14 @@ Grid gridOver(std::size_t width, std::size_t height, std::size_t most) {
     return {columns, std::clamp<std::size_t>(most / columns, 1, of(height))};
 }
 
+/// A texel of level 0 that belongs to one of the places.
+struct Part {
+    std::size_t row, column, of;
+    double share;
+};
+
+}  // namespace
+
 std::string specificationOf(const ParameterMaps& maps, const std::vector<float>& row,
                             std::size_t column) {
     std::string spec = maps.common();
@@ -45,14 +53,6 @@ std::string specificationOf(const ParameterMaps& maps, const std::vector<float>&
     }
     return spec;
 }
-
-/// A texel of level 0 that belongs to one of the places.
-struct Part {
-    std::size_t row, column, of;
-    double share;
-};
-
-}  // namespace
 
 std::vector<TexelPlace> spreadPlaces(const std::vector<LevelSize>& levels, std::size_t level,
                                      std::size_t most) {

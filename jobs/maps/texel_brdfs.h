@@ -22,6 +22,10 @@ struct TexelPlace {
 std::vector<TexelPlace> spreadPlaces(const std::vector<LevelSize>& levels, std::size_t level,
                                      std::size_t most);
 
+/// The specification of the BRDF at a column of a row of the maps.
+std::string specificationOf(const ParameterMaps& maps, const std::vector<float>& row,
+                            std::size_t column);
+
 /// The BRDF of a texel: specifications with their shares, which add up to 1.
 using SpecShares = std::map<std::string, double>;
 

@@ -11,6 +11,7 @@
 #include <hshfit/filtered_maps/filtered_sidecar.h>
 #include <hshfit/gpu/containers/containers.h>
 #include <hshfit/gpu/forms/form_files.h>
+#include <hshfit/library_maps/library_map.h>
 #include <hshfit/material_maps/material_map.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/specification/parameters.h>
@@ -51,6 +52,12 @@ std::unique_ptr<Brdf> openTexelOf(const std::string& path, bool filtered, const 
         return static_cast<std::size_t>(value);
     };
     if (filtered) return openFilteredTexel(path, index("level"), index("x"), index("y"));
+    if (isLibrarySidecar(path)) {
+        const LibraryMap map(path);
+        auto texelBrdf = map.texel(index("level"), index("x"), index("y"));
+        map.checkIntact();
+        return texelBrdf;
+    }
     const MaterialMap map(path);
     if (map.sidecar().form == "halfway") {
         const std::size_t material = map.material(index("level"), index("x"), index("y"));
@@ -69,7 +76,7 @@ std::unique_ptr<Brdf> openTexelOf(const std::string& path, bool filtered, const 
 std::unique_ptr<Brdf> openTexel(const std::string& spec) {
     const std::string path(pathIn(spec));
     const bool filtered = !path.empty() && isFilteredSidecar(path);
-    if (path.empty() || !(filtered || isMapSidecar(path))) return nullptr;
+    if (path.empty() || !(filtered || isMapSidecar(path) || isLibrarySidecar(path))) return nullptr;
     if constexpr (isBuilt(Wing::maps)) return openTexelOf(path, filtered, spec.substr(path.size()));
     throw UsageError(notBuilt(path, Wing::maps));
 }

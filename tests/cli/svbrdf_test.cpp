@@ -48,7 +48,8 @@ protected:
         for (const char* pair : {"--wi 30,180 --wo 20,0", "--wi 10,40 --wo 60,0"}) {
             const Answer answer = run("eval " + texel + " " + pair + " --json");
             EXPECT_EQ(answer.code, 0) << answer.err;
-            for (const auto& value : Json::parse(answer.out)["values"]) all.push_back(value);
+            const Json document = Json::parse(answer.out);
+            for (const auto& value : document["values"]) all.push_back(value);
         }
         return all;
     }

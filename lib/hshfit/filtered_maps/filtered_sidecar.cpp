@@ -4,6 +4,7 @@
 #include <hshfit/files/json_fields.h>
 #include <hshfit/files/json_format.h>
 #include <hshfit/files/mapped_file.h>
+#include <hshfit/material_maps/level_json.h>
 #include <hshfit/material_maps/map_sidecar.h>
 
 #include <fmt/format.h>
@@ -16,7 +17,6 @@ namespace hshfit::inline filtered_maps {
 namespace {
 
 constexpr std::size_t mostBytes = std::size_t{1} << 28;
-constexpr int mostSide = 1 << 20;
 
 nlohmann::ordered_json jsonOf(const StoredLobe& lobe) {
     return {{"widths", {lobe.widthX, lobe.widthY}},
@@ -78,9 +78,7 @@ double LobeNodes::valueAt(double place) const {
 }
 
 std::string toText(const FilteredSidecar& s) {
-    auto levels = nlohmann::ordered_json::array(), lobes = levels, nodes = levels, terms = levels;
-    for (const LevelSize& level : s.levels)
-        levels.push_back({{"width", level.width}, {"height", level.height}});
+    auto lobes = nlohmann::ordered_json::array(), nodes = lobes, terms = lobes;
     for (const StoredLobe& lobe : s.lobes) lobes.push_back(jsonOf(lobe));
     for (const LobeNodes& node : s.nodes)
         nodes.push_back({{"name", node.name}, {"nodes", node.values}});
@@ -107,7 +105,7 @@ std::string toText(const FilteredSidecar& s) {
                                     {{"file", s.texture},
                                      {"number", gpu::numberName(s.number)},
                                      {"layers", s.layers()},
-                                     {"levels", levels}}}};
+                                     {"levels", levelsJson(s.levels)}}}};
     if (!s.harmonics.empty())
         json["harmonics"] = {{"file", s.harmonics}, {"layers", s.harmonicLayers()}};
     json["lobes"] = lobes;
@@ -147,11 +145,7 @@ FilteredSidecar readFilteredSidecar(const std::string& file) {
     if (s.layout.albedos > 1 && s.layout.albedos != static_cast<int>(s.channels.count()))
         root.fail("has to be one for all channels or one for each", "albedos");
     s.terms = termsOf(root, s.layout, s.channels.count());
-    for (const JsonFields& level : texture.objects("levels")) {
-        s.levels.push_back({static_cast<std::size_t>(level.integer("width", 1, mostSide)),
-                            static_cast<std::size_t>(level.integer("height", 1, mostSide))});
-    }
-    if (s.levels.empty()) texture.fail("has no level", "levels");
+    s.levels = readLevels(texture);
     if (static_cast<std::size_t>(texture.integer("layers", 1, 1 << 24)) != s.layers())
         texture.fail(fmt::format("has to be {}", s.layers()), "layers");
     if (s.form == "harmonics") {

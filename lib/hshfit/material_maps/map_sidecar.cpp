@@ -5,6 +5,7 @@
 #include <hshfit/files/json_fields.h>
 #include <hshfit/files/json_format.h>
 #include <hshfit/files/mapped_file.h>
+#include <hshfit/material_maps/level_json.h>
 
 #include <fmt/format.h>
 
@@ -34,17 +35,6 @@ std::vector<double> flat(const JsonFields& root, const char* key, std::size_t co
     return values;
 }
 
-std::vector<LevelSize> readLevels(const JsonFields& texture) {
-    constexpr int mostSide = 1 << 20;
-    std::vector<LevelSize> levels;
-    for (const JsonFields& level : texture.objects("levels")) {
-        levels.push_back({static_cast<std::size_t>(level.integer("width", 1, mostSide)),
-                          static_cast<std::size_t>(level.integer("height", 1, mostSide))});
-    }
-    if (levels.empty()) texture.fail("has no level", "levels");
-    return levels;
-}
-
 }  // namespace
 
 std::size_t MapSidecar::layers() const {
@@ -53,9 +43,6 @@ std::size_t MapSidecar::layers() const {
 }
 
 std::string toText(const MapSidecar& s) {
-    nlohmann::ordered_json levels = nlohmann::ordered_json::array();
-    for (const LevelSize& level : s.levels)
-        levels.push_back({{"width", level.width}, {"height", level.height}});
     nlohmann::ordered_json json = {
         {"format", materialMapFormat},
         {"version", 1},
@@ -70,7 +57,7 @@ std::string toText(const MapSidecar& s) {
          {{"file", s.texture},
           {"number", gpu::numberName(s.number)},
           {"layers", s.layers()},
-          {"levels", levels}}},
+          {"levels", levelsJson(s.levels)}}},
         {"source", s.source},
         {"generator", s.generator}};
     if (!s.shapes.empty()) json["shapes"] = tableOf(s.shapes, s.layout.shape());

@@ -15,6 +15,7 @@ const forms = [
   ['outgoing', []],
   ['low-rank', []],
   ['clusters', ['--clusters', '64']],
+  ['library', ['--components', '7', '--checks', '0']],
   ['ellipse', ['--checks', '0'], join(maps, 'bumpy.json')],
   ['harmonics', ['--harmonics', '9', '--checks', '0'], join(maps, 'brushed.json')],
 ];

@@ -109,6 +109,7 @@ std::string writeDescription(const SampleDescription& sample, const std::string&
         if (value.is_string() && value.get<std::string>().starts_with("@"))
             value = mapOf(value.get<std::string>(), sample, folder, random);
     }
+    if (!sample.turned) json.erase("normal");
     if (sample.direction) {
         json["direction"] = mapOf("@angle:0:180", sample, folder, random);
         json["direction"]["channels"] = {"R"};

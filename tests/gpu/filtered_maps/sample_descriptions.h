@@ -20,6 +20,7 @@ struct SampleDescription {
     std::string precision = "float16";
     std::size_t width = 16, height = 8;
     bool direction = false, mips = true;
+    bool turned = true;  ///< has a map of normals
     Wrap wrap = Wrap::clamp;
 };
 std::vector<SampleDescription> sampleDescriptions();

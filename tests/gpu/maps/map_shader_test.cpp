@@ -1,6 +1,7 @@
 // Shaders of maps of materials, in six languages on the renderers in software, against the
 // library's texels: filters and levels by sums in double precision, light by quadrature.
 
+#include "map_places.h"
 #include "sample_maps.h"
 
 #include "../shaders/runners.h"
@@ -26,31 +27,6 @@ using test::SampleMap;
 
 constexpr std::size_t shadeEvery = 61;
 
-/// Places in and beyond the map, a third of them at centres of texels of whole levels.
-std::vector<double> placesOf(const MapSidecar& map, std::size_t count, Wrap wrap) {
-    std::mt19937 random(3);
-    std::uniform_real_distribution<double> uniform(0, 1);
-    const auto single = [](double value) { return static_cast<double>(static_cast<float>(value)); };
-    const double beyond = wrap == Wrap::repeat ? 3 : 0.2;
-    std::vector<double> places;
-    for (std::size_t k = 0; k < count; ++k) {
-        const double u = uniform(random), v = uniform(random);
-        const std::size_t level = k / 3 % map.levels.size();
-        const auto at = [&](double x, std::size_t side) {
-            const auto length = static_cast<double>(side);
-            if (k % 3 == 0) return single((std::floor(x * length) + 0.5) / length);
-            return single(x * (1 + 2 * beyond) - beyond);
-        };
-        places.push_back(at(u, map.levels[level].width));
-        places.push_back(at(v, map.levels[level].height));
-        places.push_back(
-            k % 3 == 0
-                ? static_cast<double>(level)
-                : single(uniform(random) * (static_cast<double>(map.levels.size()) + 0.5) - 0.75));
-    }
-    return places;
-}
-
 MapPlace placeAt(const ShaderJob& job, std::size_t k) {
     return {job.places[3 * k], job.places[3 * k + 1], job.places[3 * k + 2]};
 }
@@ -74,7 +50,7 @@ ShaderJob jobOf(const MaterialMap& map, Wrap wrap) {
     ShaderJob job = makeJob(std::move(payload), 5);
     for (std::size_t level = 1; level < s.levels.size(); ++level)
         job.levels.push_back(texels(level));
-    job.places = placesOf(s, job.pairs.wo.size(), wrap);
+    job.places = test::mapPlaces(s.levels, job.pairs.wo.size(), wrap == Wrap::repeat ? 3 : 0.2);
     return job;
 }
 

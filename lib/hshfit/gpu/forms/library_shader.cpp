@@ -3,6 +3,7 @@
 #include <hshfit/error.h>
 #include <hshfit/gpu/forms/internal/form_rows.h>
 #include <hshfit/gpu/forms/internal/form_text.h>
+#include <hshfit/gpu/forms/table_text.h>
 #include <hshfit/gpu/shader_text.h>
 
 #include <fmt/format.h>
@@ -51,30 +52,9 @@ void fillConstants(const SharedSums& sums, FormText& text) {
 }
 
 void fillTable(const FunctionTable& table, FormText& text) {
-    const auto number = [&](const char* name, double value) {
-        text.page.set(name, shaderNumber(value));
-    };
-    const HalfwayAxes::Constants& axes = table.axes().constants();
-    const auto half = static_cast<double>(table.size().half),
-               plane = static_cast<double>(table.size().plane),
-               horizon = static_cast<double>(table.size().horizon), rows = plane * horizon;
-    number("leastSquare", TablePlace::leastSquare);
-    number("leastSine2", TablePlace::leastSine2);
-    number("halfStraight", 1 - TablePlace::halfBend);
-    number("halfBend", TablePlace::halfBend);
-    number("planeStraight", 1 - TablePlace::planeBend);
-    number("planeBend", TablePlace::planeBend);
-    number("perLog", axes.perLog);
-    number("stretch", axes.xx * axes.xx);
-    number("lastHorizon", horizon - 1);
-    number("lastCell", horizon - 2);
-    number("halfScale", (half - 1) / half);
-    number("halfFirst", 0.5 / half);
-    number("planeScale", (plane - 1) / rows);
-    number("planeFirst", 0.5 / rows);
-    number("nodeScale", plane / rows);
+    setTablePlace(table, text.page);
     text.page.set("table", true);
-    text.cost.products += 24 + 16 * table.groups();
+    text.cost.products += tableProducts + 16 * table.groups();
     text.cost.fetches = 1 + 5 * table.groups();
 }
 

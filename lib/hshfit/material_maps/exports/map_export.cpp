@@ -55,13 +55,6 @@ Json vectorJson(const Direction& d) {
 
 }  // namespace
 
-Json levelsJson(std::span<const LevelSize> levels) {
-    Json rows = Json::array();
-    for (const LevelSize& level : levels)
-        rows.push_back({{"width", level.width}, {"height", level.height}});
-    return rows;
-}
-
 Json filesJson(std::span<const MapTextureFile> files) {
     Json rows = Json::array();
     for (const MapTextureFile& file : files) {

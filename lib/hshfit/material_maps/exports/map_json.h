@@ -2,6 +2,7 @@
 
 #include <hshfit/files/json_fields.h>
 #include <hshfit/material_maps/exports/map_export.h>
+#include <hshfit/material_maps/level_json.h>
 
 #include <span>
 
@@ -9,7 +10,6 @@ namespace hshfit::inline material_maps::inline exports {
 
 // Parts of the sidecars of maps.
 
-nlohmann::ordered_json levelsJson(std::span<const LevelSize> levels);
 nlohmann::ordered_json filesJson(std::span<const MapTextureFile> files);
 nlohmann::ordered_json testsJson(std::span<const MapTest> tests);
 

@@ -17,8 +17,8 @@
 #include <optional>
 
 namespace hshfit::embedded {
-extern const std::string_view map_corners, map_eval, map_functions, map_functions_wgsl, map_header,
-    map_material, map_node, map_shade, map_sums;
+extern const std::string_view map_corners, map_eval, map_header, map_material, map_node, map_shade,
+    map_sums;
 }  // namespace hshfit::embedded
 
 namespace hshfit::inline material_maps::inline exports {
@@ -207,16 +207,15 @@ void setLight(Language language, const MapShaderOptions& options, data& page) {
 
 void setMapPartials(data& page) {
     gpu::setSharedPartials(page);
-    const bool wgsl = page.get("wgsl")->is_true();
     setPartials({{"header", embedded::map_header},
                  {"nodeBody", embedded::map_node},
                  {"cornersBody", embedded::map_corners},
                  {"materialBody", embedded::map_material},
                  {"sumsBody", embedded::map_sums},
                  {"mapEval", embedded::map_eval},
-                 {"mapShade", embedded::map_shade},
-                 {"mapFunctions", wgsl ? embedded::map_functions_wgsl : embedded::map_functions}},
+                 {"mapShade", embedded::map_shade}},
                 page);
+    setMapFunctions(page);
 }
 
 void check(Language language, const MapSidecar& map, const MapShaderOptions& options) {

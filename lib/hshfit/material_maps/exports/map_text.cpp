@@ -10,7 +10,8 @@
 #include <algorithm>
 
 namespace hshfit::embedded {
-extern const std::string_view map_glsl, map_hlsl, map_level, map_metal, map_osl, map_wgsl;
+extern const std::string_view map_functions, map_functions_wgsl, map_glsl, map_hlsl, map_level,
+    map_metal, map_osl, map_wgsl;
 }  // namespace hshfit::embedded
 
 namespace hshfit::inline material_maps::inline exports {
@@ -110,6 +111,12 @@ MapWords setMapTextures(Language language, const MapTextures& textures, data& pa
     setCorners(page);
     setPartials({{"levelBody", embedded::map_level}}, page);
     return words;
+}
+
+void setMapFunctions(data& page) {
+    const bool wgsl = page.get("wgsl")->is_true();
+    setPartials({{"mapFunctions", wgsl ? embedded::map_functions_wgsl : embedded::map_functions}},
+                page);
 }
 
 std::string texelFetchText(Language language, const std::string& prefix, const std::string& pass,

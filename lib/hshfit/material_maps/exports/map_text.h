@@ -31,6 +31,10 @@ struct MapWords {
 MapWords setMapTextures(gpu::Language language, const MapTextures& textures,
                         kainjow::mustache::data& page);
 
+/// Sets the partial "mapFunctions": PREFIX_evalRaw, whose body is the partial "mapEval",
+/// PREFIX_eval, PREFIX_level, and with the key "shade" those of light.
+void setMapFunctions(kainjow::mustache::data& page);
+
 /// The texel of the map at column px and row py of `level` without a filter, in the layer that an
 /// expression names.
 std::string texelFetchText(gpu::Language language, const std::string& prefix,
