@@ -126,7 +126,7 @@ private:
     /// A tensor tree of seven levels has as many; finer ones are interpolated.
     static constexpr std::size_t mostCells = 16384;
 
-    /// f is 0 by definition at 90 degrees, so that the reflectance there is that of 89.9 degrees.
+    /// f is 0 by definition at 90 degrees, so that the reflectance there is taken at 89.9 degrees.
     Direction directionOf(std::size_t node) const {
         const double theta = thetaStep() * static_cast<double>(node / azimuths_);
         const double phi =
@@ -261,7 +261,7 @@ std::vector<double> Repaired::continued(const Direction& wi, const Direction& wo
     return std::move(*values);
 }
 
-/// f, or that of the nearest covered pair with the same half vector and a smaller theta_d.
+/// f, or f of the nearest covered pair with the same half vector and a smaller theta_d.
 std::vector<double> Repaired::filled(const Direction& wi, const Direction& wo, bool isCovered,
                                      Tally& tally) const {
     if (!isCovered && chosen_[holes])

@@ -40,10 +40,10 @@ struct RepairCount {
 
 /// A BRDF with repairs, each of which corrects one defect:
 ///
-/// missing      where nothing was measured, f is that of the pair with the same half vector, phi_d
+/// missing      where nothing was measured, f is as at the pair with the same half vector, phi_d
 ///              and the largest theta_d below (by whole degrees) that is covered; left as it is if
 ///              none is
-/// holes        where nothing was measured, f continues that of covered pairs with the same half
+/// holes        where nothing was measured, f continues f at covered pairs with the same half
 ///              vector smoothly from all sides (hole_filler.h); left as it is if none is near
 /// negative     values below 0 become 0
 /// reciprocity  (f(wi, wo) + f(wo, wi)) / 2; where only one of the two is covered, that one

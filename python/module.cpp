@@ -17,7 +17,8 @@
 namespace hshfit::python {
 namespace {
 
-/// Threads of all work in the process; none: those of oneTBB. Changed under the interpreter's lock.
+/// Threads of all work in the process; none: as oneTBB has them. Changed under the interpreter's
+/// lock.
 std::optional<tbb::global_control>& threadLimit() {
     static std::optional<tbb::global_control> limit;
     return limit;
@@ -40,7 +41,7 @@ PYBIND11_MODULE(_hshfit, module) {
     namespace py = pybind11;
     hshfit::setWording(pythonWording());
     // pybind11 loads NumPy at the first array, once, under a lock of C++: a thread that waits for
-    // this lock holds that of the interpreter, which loading needs. So it is done here.
+    // this lock holds the interpreter's, which loading needs. So it is done here.
     py::array_t<double>(0);
     // Results of fits have the reasons of searches that fail; the log of Ceres says no more.
     hshfit::brdfs::takeSolverLog([](const std::string&) {});

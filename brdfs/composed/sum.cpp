@@ -93,7 +93,7 @@ Channels mergedChannels(const std::vector<Sum::Term>& terms) {
     return widest->channels();
 }
 
-/// The first term's side is that of all.
+/// The first term's side is the side of all.
 std::vector<Sum::Term> ofOneSide(std::vector<Sum::Term> terms) {
     for (const Sum::Term& term : terms) requireSameSide(*terms.front().brdf, *term.brdf);
     return terms;

@@ -14,12 +14,12 @@ struct CorrelationBlock {
     std::size_t size = 0;        ///< n; 0: no block
 };
 
-/// A file of correlations; the errors of two values have the product of those of its blocks:
+/// A file of correlations; the errors of two values have the product of its blocks' correlations:
 ///     {"format": "hshfit-covariance", "version": 1,
 ///      "wavelength": {"nodes": [450, 550], "matrix": [[1, 0.5], [0.5, 1]]},
 ///      "angle": {"nodes": [-40, 0, 40], "matrix": …} or "scan": {"matrix": …}}
 /// Nodes are in nm, and polar angles of the outgoing direction in degrees, negative on the side of
-/// the light. A matrix of covariances counts as that of its correlations.
+/// the light. A matrix of covariances counts as its matrix of correlations.
 struct CorrelationBlocks {
     std::string path;
     CorrelationBlock wavelength, angle, scan;

@@ -14,9 +14,9 @@
 
 namespace hshfit::brdfs {
 
-/// A sum of models whose parameters follow laws over the wavelength. `coefficients` are those of
+/// A sum of models whose parameters follow laws over the wavelength. `coefficients` belong to
 /// all laws, one after the other: of the shapes, then of the linear parameters. Laws of an index of
-/// refraction give its value, those of other shapes u (ShapeParameter).
+/// refraction give its value, laws of other shapes u (ShapeParameter).
 class DispersedModel {
 public:
     /// Shapes without a law are shared, linear parameters are free. Throws UsageError for the model

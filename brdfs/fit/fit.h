@@ -13,9 +13,9 @@ namespace hshfit::brdfs {
 /// Starts are a Halton sequence with a random shift in the box of the FitRanges (catalog.h); the
 /// best of four times `starts` are searched from on at most 4096 of the samples, the best three
 /// minima on all. Linear parameters are eliminated where the loss is linear in f. Standard errors
-/// are those of the sandwich estimator (White 1980, 10.2307/1912934): they hold for weights and
+/// come from the sandwich estimator (White 1980, 10.2307/1912934): they hold for weights and
 /// noise of any kind, but take the residuals of samples for independent, and the model for true.
-/// AIC and BIC are those of Gaussian residuals of g with the given weights.
+/// AIC and BIC are for Gaussian residuals of g with the given weights.
 ///
 /// Samples with stated uncertainties are weighted by 1/sigma^2 (the loss has to be l2): the loss is
 /// the root of the weighted mean square of f - measured, and AIC and BIC are chi-square plus their

@@ -36,7 +36,7 @@ public:
             views_.insert(views_.begin(), view);
     }
 
-    /// The BRDF that the samples are those of.
+    /// The BRDF that has the samples.
     const Brdf& source(const Brdf& data) const {
         return views_.empty() ? data : views_.front()->seen();
     }
@@ -44,7 +44,7 @@ public:
     void belowHorizon() { ++samples_.masked.belowHorizon; }
     void invalid() { ++samples_.masked.invalid; }
 
-    /// `values`: one per channel of the source; `place`: that of a measured sample in it.
+    /// `values`: one per channel of the source; `place`: of a measured sample in it.
     void add(const DirectionPair& pair, std::span<const double> values, double weight,
              std::optional<std::size_t> place = {}) {
         const double* f = converted(values);

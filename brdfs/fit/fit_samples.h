@@ -12,7 +12,7 @@
 
 namespace hshfit::brdfs {
 
-/// The weight of a sample in a fit: that of the kind of data, 1, or its solid angle.
+/// The weight of a sample in a fit: as the kind of data has it, 1, or its solid angle.
 enum class SampleWeights { automatic, equal, solidAngle };
 /// "auto", "equal" or "solid-angle". Throws UsageError.
 SampleWeights findSampleWeights(std::string_view name);
@@ -66,7 +66,7 @@ struct FitSamples {
     SigmaCorrelation correlation = {};  ///< of the errors of values with stated uncertainties
     /// Number of the scan of each sample, from 0 on; empty: each sample is its own.
     std::vector<std::size_t> scans;
-    /// Place of each sample among those of its scan that were gathered; empty without scans.
+    /// Place of each sample among the gathered samples of its scan; empty without scans.
     std::vector<std::size_t> scanPlaces = {};
     /// Line (or number) in the file of each measured value, [channel * size() + sample]; empty for
     /// tables and functions.
@@ -109,7 +109,7 @@ bool areMeasured(const Brdf& data);
 /// by the converted values. Anything else, slices of a table included, is sampled at the nodes of a
 /// quadrature over wi (gridFor with the lobes of f) for the outgoing directions over which BRDFs
 /// are compared (comparedOutgoing), so that sums over samples are the integrals of its metrics.
-/// Weights by solid angle are those of d(wi) d(wo), of cells 4 cos(theta_d) d(h) d(d).
+/// Weights by solid angle are d(wi) d(wo), of cells 4 cos(theta_d) d(h) d(d).
 /// Throws NumericError if none is left; for the statements as sample_sigma.h says.
 FitSamples gatherSamples(const Brdf& data, const SampleOptions& options);
 

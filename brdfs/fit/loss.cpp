@@ -14,7 +14,7 @@
 namespace hshfit::brdfs {
 namespace {
 
-/// Keeps logarithms and roots, and their slopes, finite at f = 0. The first is that of the metric
+/// Keeps logarithms and roots, and their slopes, finite at f = 0. The first is as in the metric
 /// `log`; the second is a hundredth of the cube root of a fabric's f c.
 constexpr double logOffset = 1e-3, rootOffset = 1e-6;
 
@@ -34,8 +34,8 @@ constexpr std::array table{
          Loss::Kind::picture, false, ""},
 };
 
-/// Lightness L* / 100 of a radiance x over that of white; above white, which pictures clip, it goes
-/// on with a slope that falls.
+/// Lightness L* / 100 of a radiance x over the radiance of white; above white, which pictures clip,
+/// it goes on with a slope that falls.
 Mapped lightness(double x) {
     constexpr double delta = 6.0 / 29, knee = delta * delta * delta;
     if (x <= knee) return {1.16 * x / (3 * delta * delta), 1.16 / (3 * delta * delta)};

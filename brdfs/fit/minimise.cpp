@@ -112,13 +112,14 @@ constexpr int renewal = 2;
 /// save.
 constexpr int renewalOfFewer = 4;
 
-/// Equations whose matrix is that of the second derivatives: differences of the gradient, with
+/// Equations whose matrix has the second derivatives: differences of the gradient, with
 /// eigenvalues made positive. The part of it that Gauss-Newton's matrix lacks changes slowly along
 /// a search (Dennis, Gay & Welsch 1981, 10.1145/355958.355965): it is made anew at every
 /// `renewed`th point.
 class Newton {
 public:
-    /// `fewer`: a sum over part of the samples, whose gradients stand for those of all; or null.
+    /// `fewer`: a sum over part of the samples, whose gradients stand for the gradients of all; or
+    /// null.
     Newton(const SumOfSquares& equations, const SumOfSquares* fewer, std::span<const double> lower,
            std::span<const double> upper, int renewed)
         : equations_(equations), fewer_(fewer), lower_(lower), upper_(upper), renewed_(renewed) {}

@@ -18,7 +18,7 @@ struct MinimiseOptions {
     int iterations = 200;
     /// Relative change of the cost, and of x, that counts as converged.
     double costTolerance = 1e-12, stepTolerance = 1e-10;
-    /// From the eleventh iteration on, the matrix is that of second derivatives, by differences of
+    /// From the eleventh iteration on, the matrix has second derivatives, by differences of
     /// the gradient: where residuals are large, Gauss-Newton's converges by the hundred. A cost
     /// that falls by less than 1e-7 of itself in ten iterations counts as converged then.
     bool curvature = true;

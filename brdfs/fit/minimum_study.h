@@ -41,7 +41,7 @@ std::shared_ptr<const VarianceFreedom> freedomAt(const FitProblem& problem,
 /// NumericError.
 std::vector<double> spreadOfScans(const FitProblem& problem, const VarianceFreedom& byScan,
                                   const Equations& equations);
-/// Whether it is that of scans.
+/// Whether it is a study of scans.
 bool scansSuffice(const FitProblem& problem, const VarianceFreedom& byScan);
 
 /// Leverages of values, by (J^T W J)^-1. `shapes`: WeightedRows::place.
@@ -104,8 +104,8 @@ struct ProfiledProblem {
 
 /// The values of parameter i at which the least chi-square over all others exceeds the minimum by
 /// the square of a normal quantile: 68.27 % and 95 % (Venzon & Moolgavkar 1988, 10.2307/2347496).
-/// Without stated uncertainties, by that of Student's quantile times the variance of residuals.
-/// `normal`: the parameter's error by that route.
+/// Without stated uncertainties, by the square of Student's quantile times the variance of
+/// residuals. `normal`: the parameter's error by that route.
 ParameterUncertainty::Profile profileOf(const ProfiledProblem& problem, std::size_t i,
                                         double normal, const Uncertainty& study);
 

@@ -47,7 +47,7 @@ struct WeightedRows {
 ///
 /// cost = sum_{k,c} w_kc rho((g(f) - g(measured))^2) / 2, divided by sum_{k,c} w_kc g(measured)^2
 /// (by sum w where all is zero), w_kc = FitSamples::weight. With correlated errors
-/// (SigmaCorrelation) joint() and weightedRows() are those of whitened values (Whitening), held in
+/// (SigmaCorrelation) joint() and weightedRows() are about whitened values (Whitening), held in
 /// memory as a whole.
 class FitProblem {
 public:
@@ -70,7 +70,7 @@ public:
     /// Golub & Pereyra 1973, 10.1137/0710036; Kaufman's form of the matrix). `linear[k * channels
     /// + c]` receives them. For a loss that is not linear, of the problem linearised about the
     /// measured values: its weights are multiplied by the squared slope of g there. Linear
-    /// parameters of functions of each channel are those of two linearisations in turn.
+    /// parameters of functions of each channel come from two linearisations in turn.
     Equations eliminated(std::span<const double> u, bool derivatives,
                          std::vector<double>& linear) const;
 

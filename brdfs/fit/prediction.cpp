@@ -32,7 +32,7 @@ std::vector<double> pointOf(const ParametricSum& sum, const std::vector<double>&
 
 /// Derivatives of f by the coefficients at pairs of one channel.
 struct Gradients {
-    std::vector<std::size_t> coefficients;  ///< those of which the channel depends
+    std::vector<std::size_t> coefficients;  ///< on which the channel depends
     Eigen::MatrixXd slopes;                 ///< [pair, coefficient of these]
     std::vector<double> values;             ///< f
 };

@@ -38,7 +38,7 @@ struct Prediction {
 };
 
 /// Predicts f at pairs that need not have been fitted. Both directions above the horizon. The error
-/// is that of the fitted curve; a further measurement has its own noise in addition. It does not
+/// is the fitted curve's; a further measurement has its own noise in addition. It does not
 /// hold the misfit of a wrong model. Coefficients at a bound count as known. `bootstrap`: evaluates
 /// the fits to resampled data too, where there are any.
 Prediction predict(const FitResult& fit, std::span<const DirectionPair> pairs,
@@ -49,7 +49,7 @@ Prediction predict(const FitResult& fit, const FitSamples& samples, bool bootstr
 /// The factor of the errors with which bands hold the true f at all these pairs and channels at
 /// once with this probability: the quantile, over `draws` draws of the coefficients, of the largest
 /// |change of f| / error (Scheffe's bands hold for all pairs there are, and are wider). Draws are
-/// those of the multivariate Student distribution with the fewest degrees of freedom among the
+/// from the multivariate Student distribution with the fewest degrees of freedom among the
 /// pairs. The same for the same seed.
 double simultaneousFactor(const FitResult& fit, std::span<const DirectionPair> pairs,
                           double probability, std::uint64_t seed = 1, std::size_t draws = 4000);

@@ -14,7 +14,7 @@ struct SampleCut {
     double theta = 0, azimuth = 0;     ///< of the fixed direction, degrees; means over its samples
     std::vector<std::size_t> samples;  ///< indices, by angle
     /// Degrees of the other direction from the normal, above 0 on the side of the mirror direction;
-    /// of retroreflection that of both.
+    /// of retroreflection the angle of both.
     std::vector<double> angles;
 };
 
@@ -35,7 +35,7 @@ struct SampleCuts {
 
 /// The cuts with three samples or more. Directions count as one within 0.5 degrees of elevation and
 /// 1 degree of azimuth (isotropic data: of any azimuth), and as in the plane within 1 degree. The
-/// fixed direction is that of which cuts hold more; without cuts of either, retroreflection.
+/// fixed direction is the one of which cuts hold more; without cuts of either, retroreflection.
 SampleCuts cutsOf(const FitSamples& samples);
 
 /// Those to draw: "auto", at most six from the first to the last elevation; "all"; or elevations in

@@ -45,9 +45,9 @@ struct SigmaStatement {
 SigmaStatement parseSigma(std::string_view text);
 
 /// The samples whose errors may be correlated:
-///     column     those of one number in the column scan of the companion file of the
+///     column     samples of one number in the column scan of the companion file of the
 ///                uncertainties, or else of the data file (ASTM)
-///     incidence  those of one incident direction
+///     incidence  samples of one incident direction
 ///     runs       so many after one another in the data file
 struct ScanStatement {
     enum class From { nothing, column, incidence, runs };

@@ -24,10 +24,10 @@ void requireScans(std::size_t scans, std::size_t parameters, bool stated);
 Eigen::MatrixXd scanSpread(const std::vector<ScanSums>& scans, const Eigen::MatrixXd& inverse);
 
 /// Degrees of freedom of the variances that scanSpread gives to combinations of the parameters, the
-/// rows of `of`: Satterthwaite's, those of the chi-square with the variance's mean and variance if
+/// rows of `of`: Satterthwaite's, of the chi-square with the variance's mean and variance if
 /// errors are independent with equal weighted variance (Bell & McCaffrey 2002; Pustejovsky & Tipton
 /// 2018, 10.1080/07350015.2016.1247004). About S if all S scans determine a combination alike,
-/// fewer if some do; intervals are those of Student's distribution. 0 where the variance is 0.
+/// fewer if some do; intervals are by Student's distribution. 0 where the variance is 0.
 std::vector<double> scanDegrees(const std::vector<ScanSums>& scans, const Eigen::MatrixXd& inverse,
                                 const Eigen::MatrixXd& of);
 

@@ -17,8 +17,8 @@ struct ParameterOrder {
 };
 
 /// Takes away the errors of linear parameters that are not told from 0 (two errors) in any channel,
-/// and those of the shapes that have no effect without them: shapes are not determined there, and
-/// errors by derivatives mean nothing, that of the scale included (Davies 1977,
+/// and errors of the shapes that have no effect without them: shapes are not determined there, and
+/// errors by derivatives mean nothing, the error of the scale included (Davies 1977,
 /// 10.1093/biomet/64.2.247). `joint`: the equations at another x.
 void reportUnseenLobes(const ParameterOrder& order,
                        const std::function<Equations(std::span<const double>)>& joint,

@@ -88,7 +88,7 @@ void RglBrdf::Block::set(const RglTables& tables, Direction wo, const DirectionB
         uHalf[k] = std::sqrt(2 / pi * quadrantAngle(sine, hz_[k]));
     }
     if (tables.reduction == 0) {
-        // The azimuth of h relative to that of wi, which is arbitrary at the normal.
+        // The azimuth of h relative to the azimuth of wi, which is arbitrary at the normal.
         for (std::size_t k = 0; k < count; ++k) {
             const double sine = ix_[k] * hy_[k] - iy_[k] * hx_[k];
             const double cosine = ix_[k] * hx_[k] + iy_[k] * hy_[k];

@@ -17,9 +17,9 @@ struct RglResolution {
     std::size_t phi = 9;        ///< incident azimuths of a quarter circle; isotropic: 1
     std::size_t slice = 96;     ///< colours per side of the square, per incident direction
     std::size_t normals = 128;  ///< normals per side of their square
-    /// The share of a Lambertian distribution in that of the normals.
+    /// The share of a Lambertian distribution in the distribution of normals.
     double floor = 0.05;
-    /// The share of an even distribution in that of the normals seen from an incident direction.
+    /// The share of an even distribution in the normals seen from an incident direction.
     double share = 0.5;
     /// None: retro-reflection, or the average if that fits the BRDF better, or uniform if the
     /// BRDF gives no distribution.

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Items of a class whose mean is better than that of the wider class.
+/// Items of a class whose mean is better than the mean of the wider class.
 constexpr std::size_t enough = 5;
 constexpr std::string_view header = "name,class,wider_class,seconds,cpu_seconds,peak_bytes";
 

@@ -24,10 +24,10 @@ namespace hshfit::jobs {
 
 struct ExportOptions {
     std::string targets = "bin,glsl-es";  ///< gpu::selectTargets
-    std::string name = {};                ///< of the files; empty: that of the coefficient file
+    std::string name = {};                ///< of the files; empty: the coefficient file's
     /// The BRDF that the error is measured against; empty: the one that the coefficients name.
     std::string source = {};
-    /// Set of the textures; empty: that of the coefficients, and forms that have a shader of their
+    /// Set of the textures; empty: the coefficients', and forms that have a shader of their
     /// own (gpu/forms) are exported as they are. Given, those are projected anew.
     std::string outgoing = {};
     std::string basis = "hsh";  ///< of the form halfway projected anew

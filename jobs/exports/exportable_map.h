@@ -16,8 +16,8 @@ class ExportableMap {
 public:
     virtual ~ExportableMap() = default;
 
-    /// The map in an answer; `order` is that of its basis or its harmonics. Basis and outgoing
-    /// directions are those of maps of coefficients, the model that of others.
+    /// The map in an answer; `order` is of its basis or its harmonics. Maps of coefficients
+    /// have a basis and outgoing directions, others a model.
     struct Facts {
         std::string source, form, basis = {}, outgoing = {}, model = {};
         int order = 0;

@@ -61,7 +61,7 @@ void checkFigures(const FigureOptions& options) {
 
 namespace {
 
-/// A fit with the samples that its figures show: of pixels those of the metrics.
+/// A fit with the samples that its figures show: of pixels the samples of the metrics.
 class PlottedFit {
 public:
     explicit PlottedFit(const brdfs::FitReport& report)
@@ -81,7 +81,7 @@ public:
         model.residuals = brdfs::standardisedResiduals(
             samples_, brdfs::predictedValues(result, samples_),
             pixels_ ? brdfs::Loss::Kind::cosine : report_.options.loss, result.parameters.size());
-        // Curves of fits with terms of the instrument are readings; bands are those of f.
+        // Curves of fits with terms of the instrument are readings; bands are about f.
         if (measured() && !result.instrument && !result.point.channels.empty()) {
             model.band = [&result](std::span<const DirectionPair> pairs) {
                 return halfWidths(result, pairs);

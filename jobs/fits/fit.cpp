@@ -236,7 +236,7 @@ Fitted fitWithParts(const FitOptions& options, const brdfs::FitSamples& samples,
 /// Fits in place of a poor one, made in brief: a second lobe and sums of the catalog that are known
 /// to describe much, where no standard material was asked for, and the model by other losses.
 /// `seen`: of the data; null where it has no pictures. A lower FLIP does not count where the
-/// colours of the sphere are further off than in the poor fit, as those of a sphere that is lit all
+/// colours of the sphere are further off than in the poor fit, as on a sphere that is lit all
 /// over.
 std::vector<TriedFit> triedFits(const Brdf& data, const brdfs::FitSamples& samples,
                                 const FitOptions& options, brdfs::FitOptions how,
@@ -406,7 +406,7 @@ std::pair<Fitted, PreparedFiles> fitOpen(const Brdf& brdf, const std::string& da
                         data, options.model, fitted.result.message, Setting{"FitOptions::accept"}));
     }
     if (seen) fitted.picture = seen->errorOf(*brdfs::openFit(fitted.result));
-    // Metrics are those of f, not of pixels.
+    // Metrics are about f, not pixels.
     const bool pixels = samples.origin == brdfs::SampleOrigin::pixels;
     const brdfs::FitSamples ofMetrics =
         pixels ? brdfs::gatherSamples(brdf, {.grazingCut = options.grazingCut})

@@ -28,7 +28,7 @@ struct FitOptions {
     /// brdfs::findLoss. Empty: l2 with stated uncertainties; for scattered samples cosine, or
     /// log-relative where they span more than brdfs::mostDecades; cosine where another option is
     /// about single samples (robust, weights, places, scans, budget, bootstrap, profile, residuals,
-    /// bands); else picture, whose spheres look most like those of the data.
+    /// bands); else picture, whose spheres look most like the data's.
     std::string loss = {};
     std::string robust = "none";   ///< brdfs::findRobust
     std::string weights = "auto";  ///< brdfs::findSampleWeights
@@ -64,7 +64,7 @@ struct FitOptions {
     /// Where the fit is poor: try others in brief, for Fitted::poor.
     bool advise = true;
 };
-/// Those that a front end states; with those of its figures and of `instrument`.
+/// The options that a front end states, with options of its figures and of `instrument`.
 OptionRows<FitOptions> fitOptions();
 OptionRows<brdfs::InstrumentText> instrumentOptions();
 
@@ -80,8 +80,8 @@ struct Fitted {
     /// 1 - (loss / loss of a black surface)^2: the share of the data, in units of the loss. Of
     /// `picture` with the spread of the data about their mean in place of a black surface.
     double explained = 0;
-    /// Root of the integral of ((fit - data) cos(theta_i))^2 over that of (data cos(theta_i))^2,
-    /// over the samples; of `picture` over the nodes of a comparison.
+    /// Root of the integral of ((fit - data) cos(theta_i))^2 over the integral of (data
+    /// cos(theta_i))^2, over the samples; of `picture` over the nodes of a comparison.
     double relativeError = 0;
     std::optional<PictureError> picture = {};          ///< of the fit against the data
     std::optional<brdfs::SampleFactors> factors = {};  ///< of scattered samples

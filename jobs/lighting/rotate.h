@@ -48,14 +48,14 @@ struct Rotated {
 /// OutputError.
 Rotated rotate(const std::string& input, const std::string& output, const RotateOptions& options);
 
-/// The same of coefficients at hand, in place; `name` is that of light in messages.
+/// The same of coefficients at hand, in place; `name` is the light in messages.
 Rotated rotate(Coefficients& coefficients, const RotateOptions& options);
 Rotated rotate(LightCoefficients& light, const RotateOptions& options, const std::string& name);
 
 struct MatrixOptions {
     std::string from, to;  ///< bases
     int order = 3;         ///< of `to`
-    int fromOrder = 0;     ///< 0: that of `to`
+    int fromOrder = 0;     ///< 0: as `order`
     std::optional<Rotation> rotation = {};
     std::optional<EulerAngles> euler = {};  ///< the rotation, if there is none above
     /// Both bases with the Condon-Shortley sign, as in the source papers.
@@ -72,8 +72,8 @@ OptionRows<MatrixOptions> matrixOptions();
 std::string_view weightName(Basis::Inner weight);
 
 /// Rows TO, columns FROM: the change of basis or, with a rotation, from the coefficients of a
-/// function to those of the rotated function. A rotation of different bases needs SH as one of
-/// them, which rotates. At most 2^22 entries. Throws UsageError.
+/// function to the coefficients of the rotated function. A rotation of different bases needs SH as
+/// one of them, which rotates. At most 2^22 entries. Throws UsageError.
 std::vector<std::vector<double>> matrix(const MatrixOptions& options);
 
 }  // namespace hshfit::jobs

@@ -13,7 +13,7 @@ namespace hshfit::jobs {
 /// Errors of forms at a few texels of level 0, spread over it, against the BRDFs of the model.
 class ChoiceErrors {
 public:
-    /// `head` is that of the map, of any form; at most `most` texels.
+    /// `head` is the map's, of any form; at most `most` texels.
     ChoiceErrors(ParameterMaps& maps, TexelSource& texels, MapSidecar head, std::size_t most,
                  Processes& processes);
 
@@ -24,7 +24,7 @@ public:
     TexelPairErrors of(const std::function<std::unique_ptr<Brdf>(const TexelPlace&)>& at) const;
 
 private:
-    /// `change` makes of a texel's coefficients those of the form.
+    /// `change` makes of a texel's coefficients the coefficients of the form.
     TexelPairErrors ofCoefficients(const std::function<void(std::vector<float>&)>& change) const;
 
     MapSidecar head_;

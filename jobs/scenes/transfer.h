@@ -38,7 +38,8 @@ struct TransferOptions {
     /// are not; noise of the default number of rays is 2 % (docs/explanation/transfer.md).
     double error = 0.05;
     std::optional<std::size_t> bytes = {};
-    /// Lights of the pictures and of the page, as specifications; those of the scene come first.
+    /// Lights of the pictures and of the page, as specifications; the lights of the scene come
+    /// first.
     std::vector<std::string> lights = {};
     /// BRDFs that the page can put in the place of the scene's materials.
     std::vector<std::string> swaps = {};
@@ -49,7 +50,7 @@ struct TransferOptions {
     /// end.
     std::optional<double> seconds = {};
     /// Keep finished parts in FOLDER/.hshfit-transfer.partial until all is written, and go on from
-    /// those of a run that was stopped.
+    /// the parts of a run that was stopped.
     bool resume = false;
     bool force = false;  ///< replace existing files
 };
@@ -58,7 +59,7 @@ OptionRows<TransferOptions> transferOptions();
 /// The distance of a picture by transfer from one by path tracing.
 struct TransferPictureError {
     int order = 0;          ///< bands of light
-    double relativeL2 = 0;  ///< root of the sum of squares over that of the reference
+    double relativeL2 = 0;  ///< root of the sum of squares over the reference's
     double maximum = 0;     ///< the largest difference of a pixel and colour, over the mean
     int column = 0, row = 0;
 };

@@ -16,7 +16,7 @@ namespace hshfit::jobs {
 
 struct CompareOptions {
     std::string metrics = "all";  ///< or names, separated by commas
-    /// OutgoingSet::parse; empty: those of the coefficients, else as in outgoingOrDefault.
+    /// OutgoingSet::parse; empty: as the coefficients have them, else as in outgoingOrDefault.
     std::string outgoing = {};
     bool rgb = false;                           ///< wavelengths as linear Rec. 709
     std::optional<FigureOptions> figures = {};  ///< for print; none: not drawn
@@ -64,7 +64,7 @@ struct ManyCompared {
 };
 
 /// One reference against each of `others`, or, where `a` is a folder or a pattern, its files
-/// against those of the same name in the only one of `others`. Folders stand for their measured
+/// against files of the same name in the only one of `others`. Folders stand for their measured
 /// files and coefficient files. Pages go to OUTPUT/NAME. A failure does not stop the rest. Throws
 /// UsageError, also for names that come twice, InputError where no names agree, and OutputError.
 ManyCompared compareMany(const std::string& a, const std::vector<std::string>& others,

@@ -78,7 +78,7 @@ Minimum searched(const InstrumentProblem& problem, const std::vector<double>& st
     return best;
 }
 
-/// Sets the specification, or those of wavelengths, of the material at x.
+/// Sets the specification, or specifications of wavelengths, of the material at x.
 void setMaterial(const InstrumentProblem& problem, const std::vector<double>& x,
                  FitResult& result) {
     const std::size_t shapes = problem.shapeCount();

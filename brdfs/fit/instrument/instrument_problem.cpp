@@ -97,7 +97,8 @@ double InstrumentProblem::strayOf(std::span<const double> x) const {
     return stray_ ? x[*stray_] : readings_.instrument.stray.value;
 }
 
-// z: columns of the block, mixed with those of the veil; `difference`: veil less block, by column.
+// z: columns of the block, mixed with columns of the veil; `difference`: veil less block, by
+// column.
 void InstrumentProblem::fillBlock(std::span<const double> x, bool derivatives, std::size_t begin,
                                   std::size_t size, std::vector<double>& z,
                                   const std::vector<double>& difference,
@@ -249,7 +250,7 @@ double InstrumentProblem::bestScale(std::size_t scan, double square, double prod
     return std::exp(t);
 }
 
-// Slopes by x of the material become those of the model.
+// Slopes by x of the material become slopes of the model.
 void InstrumentProblem::setScales(ReadingRows& rows) const {
     const std::size_t count = samples_.size();
     rows.scales.assign(scanCount_, 1);

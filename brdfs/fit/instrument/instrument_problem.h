@@ -45,7 +45,7 @@ struct ReadingRows {
 
 /// The least-squares problem of a fit with an instrument (Instrument), with the losses l2 and
 /// cosine. x: shapes' u, linear[k * channels + c], offset[c], dark[c], stray, zeros of angles in
-/// degrees (those of all samples, then of incidence for each scan, then of the detector), those
+/// degrees (of all samples, then of incidence for each scan, then of the detector), zeros
 /// that are fitted. The scales of scans have their best values for each x.
 /// cost = (sum w (model - y)^2 + sum over scans ((ln a + width^2 / 2) / width)^2 + sum (zero /
 /// width)^2) / 2 / normalisation: E[ln a] = -width^2 / 2 where a is 1 in the mean, so that 200
@@ -94,7 +94,7 @@ public:
 
     /// 1/width^2 of the scale of a scan, times how often it counts; 0 without a width.
     double priorOf(std::size_t scan) const { return priors_.empty() ? 0 : priors_[scan]; }
-    /// The square of the prior of a scale, and that of its slope by the scale.
+    /// The square of the prior of a scale, and of its slope by the scale.
     double priorSquare(std::size_t scan, double scale) const;
     double priorWeight(std::size_t scan, double scale) const {
         return priorOf(scan) / (scale * scale);

@@ -14,9 +14,9 @@ namespace hshfit::brdfs {
 ///
 /// The scales of scans follow the other parameters. Priors of scales and zeros count as values of
 /// chi-square and as known errors in the sandwich. By scan, errors of the other parameters are CR3
-/// with the scan's scale and zeros eliminated; those of a scale or zero add its own variance, for
+/// with the scan's scale and zeros eliminated; errors of a scale or zero add its own variance, for
 /// which the errors of its samples are taken as independent. The bootstrap of scans and profiles
-/// are those of all but scales.
+/// are about all but scales.
 void describeReadings(const InstrumentProblem& problem, const std::vector<double>& x,
                       const FitOptions& options, FitResult& result);
 

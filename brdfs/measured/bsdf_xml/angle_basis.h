@@ -55,9 +55,9 @@ private:
 };
 
 /// Bases known by name ("LBNL/Klems Full", "… Half", "… Quarter"; case does not matter), in order
-/// of preference; empty for an unknown name. Half and Quarter have two versions: that of WINDOW and
+/// of preference; empty for an unknown name. Half and Quarter have two versions: one of WINDOW and
 /// of Radiance today (rings end at 45.5, 58.5 and 71.5, or 45 and 63 degrees; 77 and 41 patches),
-/// and that of Radiance before (46.5, 61.5 and 76.5, or 46 and 66 degrees; 73 and 41 patches).
+/// and one of Radiance before (46.5, 61.5 and 76.5, or 46 and 66 degrees; 73 and 41 patches).
 std::vector<AngleBasis> standardAngleBases(std::string_view name);
 
 }  // namespace hshfit::brdfs

@@ -42,7 +42,7 @@ KlemsBrdf::KlemsBrdf(const BsdfDocument& document, BsdfSelection selection)
     findLaws();
 }
 
-/// The matrices of further wavelengths, after that of the first.
+/// The matrices of further wavelengths, after the first's.
 void KlemsBrdf::readSpectrum(const BsdfDocument& document) {
     std::vector<double> nanometres;
     for (const BsdfBlock* block : selection_.spectrum) {

@@ -62,7 +62,7 @@ public:
     /// over outgoing patches of f times projected solid angle.
     double directionalReflectance(std::size_t channel, std::size_t incident) const;
     /// Takes note of the reflection of light from the same side: conservation of energy is then
-    /// that of both together. False, and nothing changes, for a reflection over other cells or
+    /// about both together. False, and nothing changes, for a reflection over other cells or
     /// in other channels.
     bool addReflection(const KlemsBrdf& reflection);
     void addFact(Fact fact) { selection_.facts.push_back(std::move(fact)); }

@@ -64,9 +64,9 @@ void TreeBrdf::addTree(const BsdfDocument& document, const BsdfBlock& block) {
     });
 }
 
-// The mirrored coordinates of a mirrored vector are those of the square, so that laws of f are
-// symmetries of the tree: reciprocity is T(p, q) = T(1 - q, 1 - p), because the incident square is
-// that of -wi.
+// The mirrored coordinates of a mirrored vector are coordinates of the square, so that laws of f
+// are symmetries of the tree: reciprocity is T(p, q) = T(1 - q, 1 - p), because the incident square
+// is the square of -wi.
 void TreeBrdf::findLaws() {
     const bool isotropic = trees_[0].rank() == 3;
     const auto all = [&](const std::array<int, 4>& from, const std::array<bool, 4>& flipped) {

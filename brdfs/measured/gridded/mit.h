@@ -35,8 +35,8 @@ struct MitLayout {
 
 /// A measured anisotropic BRDF in such a file, read from the mapped bytes.
 ///
-/// Assumptions where the description is silent: a value is that of the centre of its bin, theta_in
-/// and phi_in are those of wi, phi_diff = phi_out - phi_in, and azimuths count from +x towards +y.
+/// Assumptions where the description is silent: a value belongs to the centre of its bin, theta_in
+/// and phi_in are angles of wi, phi_diff = phi_out - phi_in, and azimuths count from +x towards +y.
 /// With header[9] = 1, f beyond phi_diff = pi is that with wi and wo exchanged. The values times
 /// `scale` are f in 1/sr.
 ///

@@ -143,8 +143,8 @@ struct ScatterInterpolant::Nodes {
     double radius(const Neighbours& found, std::size_t wanted) const;
 };
 
-/// One node of all points of a group: their mean, or that of the samples themselves where exchanged
-/// images of others contradict them.
+/// One node of all points of a group: their mean, or the mean of the samples themselves where
+/// exchanged images of others contradict them.
 void ScatterInterpolant::Nodes::addNode(const std::vector<std::size_t>& group,
                                         const std::vector<double>& given,
                                         const Exchanged& isExchanged) {
@@ -204,7 +204,7 @@ void ScatterInterpolant::Nodes::merge(const std::vector<Point>& points,
     }
 }
 
-/// The distance at which weights vanish: that of the first neighbour without weight.
+/// The distance at which weights vanish: to the first neighbour without weight.
 double ScatterInterpolant::Nodes::radius(const Neighbours& found, std::size_t wanted) const {
     return found.count > wanted ? found.distance[wanted] : 2 * pi;
 }

@@ -68,7 +68,7 @@ void PabReader::takeFormat() {
 }
 
 void PabReader::takeHeader() {
-    // A header after rows is that of another file behind this one.
+    // A header after rows begins another file behind this one.
     if (inRows_) header_ = {};
     inRows_ = false;
     std::string name = lowerCase(reader_.takeWord());

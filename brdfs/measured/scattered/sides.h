@@ -23,14 +23,15 @@ class SidedSamples {
 public:
     explicit SidedSamples(const Channels& channels);
 
-    /// Adds a sample as Samples::add does, and returns those of its side; null where it is left
-    /// out. Directions up to 0.06 degrees below the horizon belong to the front, as roundings do.
+    /// Adds a sample as Samples::add does, and returns the samples of its side; null where it is
+    /// left out. Directions up to 0.06 degrees below the horizon belong to the front, as roundings
+    /// do.
     Samples* add(const Direction& in, const Direction& out, std::span<const double> f,
                  const Row& row);
 
-    /// The samples of a side by its word; of "auto" those of the first of the four, in the order
-    /// above, that has any. The others are named as left out. Throws InputError that starts with
-    /// `where` for a side without samples, naming those that have some.
+    /// The samples of a side by its word; of "auto" the samples of the first of the four, in the
+    /// order above, that has any. The others are named as left out. Throws InputError that starts
+    /// with `where` for a side without samples, naming those that have some.
     Samples take(std::string_view side, const std::string& where);
 
 private:

@@ -245,7 +245,7 @@ void addQuantity(StatedQuantity& all, StatedQuantity one) {
     all = all == StatedQuantity::none ? one : StatedQuantity::unclear;
 }
 
-/// Takes the name as that of a column of wavelengths: wavelength, lambda_nm, wl (um).
+/// Takes the name of a column of wavelengths: wavelength, lambda_nm, wl (um).
 bool takeWavelengthName(const ColumnName& name, TableColumns& columns) {
     std::string_view word = name.word, unit = name.unit;
     if (!isAmong(word, wavelengthWords) && word.size() > 2) {

@@ -24,10 +24,10 @@ struct PairErrors {
 /// A reference BRDF at fixed pairs, and the errors of others against it. Immutable after it is
 /// made; safe to use from many threads.
 ///
-/// The metrics are those of metrics.h with means over the pairs; captured-energy counts f at the
+/// The metrics are the ones of metrics.h with means over the pairs; captured-energy counts f at the
 /// same pairs. Two are found otherwise: albedo is the largest difference of the directional albedo
 /// averaged over a stratum of cos(theta_o) of a sixteenth or so and all azimuths, reciprocity the
-/// root mean square of g(wi,wo) - g(wo,wi) over that of g for all pairs of 48 directions.
+/// root mean square of g(wi,wo) - g(wo,wi) relative to g, for all pairs of 48 directions.
 class PairReference {
 public:
     /// Throws NumericError if the reference is not finite somewhere.
@@ -86,7 +86,7 @@ private:
     std::vector<Division> zones_;
 };
 
-/// Root mean square of g(wi,wo) - g(wo,wi) over that of g, for all pairs of 48 directions.
+/// Root mean square of g(wi,wo) - g(wo,wi) relative to g, for all pairs of 48 directions.
 double reciprocityError(const Brdf& g);
 
 /// The errors of a form that every command prints, so that no mean hides a maximum.
@@ -98,7 +98,7 @@ struct PairSummary {
     Value meanLog;     ///< mean |ln(1 + f c) - ln(1 + g c)|
     Value relativeL2;  ///< root of the integral of ((g - f) c)^2 over (f c)^2
     /// The share that g misses of the energy of f cos(theta_i) cos(theta_o), which exists for every
-    /// BRDF of finite albedo: the integral of the squared difference over that of the square.
+    /// BRDF of finite albedo: the integral of (g - f)^2 over the integral of f^2.
     Value energyLeft;
     std::array<Value, zoneCount> zones;   ///< the same by PairZone
     double maximum = 0;                   ///< of |g - f| c

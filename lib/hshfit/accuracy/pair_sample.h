@@ -61,8 +61,8 @@ struct SpreadOptions {
 /// equal strata is divided at an eighth and at a 64th of it, so that each replicate has a wo nearly
 /// at the horizon. wi is from three rank-1 lattices: uniform in solid angle; with half vectors
 /// whose slope is spread evenly over the logarithm from 1e-4 to 10, so that lobes of every width
-/// are seen; and with cosines likewise from 1e-4 to 1. Weights are those of the mixture (Veach's
-/// balance heuristic). The same on every machine: the shifts are those of mt19937_64 with `seed`
+/// are seen; and with cosines likewise from 1e-4 to 1. Weights come from the mixture (Veach's
+/// balance heuristic). The same on every machine: the shifts come from mt19937_64 with `seed`
 /// (Cranley & Patterson 1976).
 PairSample spreadPairs(const SpreadOptions& options = {});
 

@@ -17,8 +17,8 @@ public:
     virtual std::vector<double> outgoingKinks(const Direction& wi) const = 0;
     virtual std::vector<KinkCurve> outgoingKinkCurves(const Direction& wi) const = 0;
 
-    /// n > 0: over wi for a wo, and over wo for a wi, no cell is narrower than those of a grid of
-    /// 2^n by 2^n on the square of `directionFromSquare`. 0: kinks and curves name all steps.
+    /// n > 0: over wi for a wo, and over wo for a wi, no cell is narrower than the cells of a grid
+    /// of 2^n by 2^n on the square of `directionFromSquare`. 0: kinks and curves name all steps.
     virtual int squareLevels() const = 0;
 
     /// Cells of wi within which f is the same for every wo, and whose borders are also those of the

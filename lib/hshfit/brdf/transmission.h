@@ -10,7 +10,7 @@ namespace hshfit::inline brdf {
 
 /// A transmission, f_t over the two opposite hemispheres, is a `Brdf` whose outgoing direction is
 /// given mirrored at the surface: wo = (x, y, z), z > 0, stands for (x, y, -z) below it, and wi is
-/// above. Light that goes straight on is at mirrored(wi), as that of a mirror is, so that maps of
+/// above. Light that goes straight on is at mirrored(wi), as a mirror's is, so that maps of
 /// outgoing directions, bases and half vectors serve both. Its integrals over wo are
 /// transmittances. It has no law of exchange: f_t(wi, wo) and f_t(wo, wi) are light from the same
 /// side, while Helmholtz reciprocity relates light from one side to light from the other.
@@ -32,8 +32,8 @@ inline Direction throughSurface(const Direction& d) {
     return {d.x, d.y, -d.z};
 }
 
-/// A BRDF whose peaks over wo for a wi are elsewhere than those over wi for a wo (Brdf::lobes), as
-/// those of refraction are.
+/// A BRDF whose peaks over wo for a wi are elsewhere than its peaks over wi for a wo (Brdf::lobes),
+/// as refraction has them.
 class HasOutgoingLobes {
 public:
     virtual std::vector<Lobe> outgoingLobes(const Direction& wi) const = 0;

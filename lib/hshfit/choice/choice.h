@@ -49,10 +49,10 @@ inline constexpr std::size_t smallestBytes = 128;
 /// formulas last where quick ones are far from faithful.
 ///
 /// Recommended is, of the rows that the renderer takes within the bounds and that are not poor, the
-/// one of fewest bytes, where `smallestBytes` and less count alike; of equal ones that of the least
-/// mean FLIP. Where all are poor and no error was stated: of the rows within a tenth of the least
-/// mean FLIP that of fewest bytes. Throws NumericError where no candidate could be made, and where
-/// cycles are bounded and costs are not known.
+/// one of fewest bytes, where `smallestBytes` and less count alike; of equal ones the one of the
+/// least mean FLIP. Where all are poor and no error was stated: of the rows within a tenth of the
+/// least mean FLIP the one of fewest bytes. Throws NumericError where no candidate could be made,
+/// and where cycles are bounded and costs are not known.
 Choice choose(const Brdf& source, std::vector<Candidate> candidates, const ChoiceOptions& options);
 
 }  // namespace hshfit::choice

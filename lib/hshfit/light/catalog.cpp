@@ -76,7 +76,7 @@ void onlyOne(std::string_view owner, const Parameters& p) {
                         owner));
 }
 
-/// Radiance, or the irradiance asked for over that of radiance 1.
+/// Radiance, or the irradiance asked for over the irradiance of radiance 1.
 Rgb radianceBy(std::string_view owner, const Parameters& p, double irradianceOfOne) {
     onlyOne(owner, p);
     const bool byIrradiance = p.given("irradiance") || p.colour("radiance")[0] < 0;
@@ -352,7 +352,7 @@ constexpr std::string_view studio =
     "panel:elevation=20,azimuth=84,width=60,height=30,radiance=3/2.7/2.2+"
     "uniform:radiance=0.06";
 
-/// The terms that a term stands for: those of the studio with its own turn and scale, or itself.
+/// The terms that a term stands for: the studio's with its own turn and scale, or itself.
 std::vector<std::string> termsOf(std::string_view term) {
     const std::size_t colon = std::min(term.find(':'), term.size());
     const LightKind& row = studioKind();

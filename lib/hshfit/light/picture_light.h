@@ -28,7 +28,7 @@ PictureLight readPictureLight(const std::string& path, double scale,
 /// The remarks of all pictures among the lights.
 std::vector<std::string> remarksOf(std::span<const Light> lights);
 
-/// The layout with the size of `rgb`, or with that of the rows of forEachRow.
+/// The layout with the size of `rgb`, or with the size of the rows of forEachRow.
 PictureGeometry geometryOf(const PictureLight& light);
 PictureGeometry fileGeometryOf(const PictureLight& light);
 
@@ -44,7 +44,7 @@ Direction toPicture(const PictureLight& light, const Direction& world);
 /// Directions in the world at (column, row) in pixels of `rgb`, fractions allowed.
 Direction directionOf(const PictureLight& light, double column, double row);
 
-/// Radiance seen in a direction: that of its pixel; 0 below a dome.
+/// Radiance seen in a direction: the value of its pixel; 0 below a dome.
 Rgb radianceOf(const PictureLight& light, const Direction& world);
 
 /// A part of the picture as one sample: the mean direction weighted with the flux, and the integral
@@ -56,7 +56,7 @@ struct PictureSample {
 
 /// The picture cut into quarters until each part is a pixel or holds at most the share `finest` of
 /// the flux times its width in radians: bright and wide parts are cut, so that small lamps keep
-/// their place and dark sky costs little. The fluxes sum to that of the picture.
+/// their place and dark sky costs little. The fluxes sum to the picture's flux.
 std::vector<PictureSample> pictureSamples(const PictureLight& light, double finest);
 
 }  // namespace hshfit::inline light

@@ -92,7 +92,7 @@ Principal principalOf(const Moments& moments, const Eigen::VectorXd& centre, Eig
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
     const Eigen::Index most = std::max<Eigen::Index>(std::min(covariance.cols(), count - 1), 0);
     Principal principal{centre + off, solver.eigenvectors().rowwise().reverse().leftCols(most)};
-    // The sign of a component is that of its largest number.
+    // The sign of a component is the sign of its largest number.
     for (auto component : principal.components.colwise()) {
         Eigen::Index largest = 0;
         component.cwiseAbs().maxCoeff(&largest);

@@ -7,9 +7,9 @@
 
 namespace hshfit::material_library {
 
-/// The functions that the materials of a basis share, as sums of those of the halfway form: channel
-/// 0 is the mean, channel k the step times component k - 1, each the smooth part and the lobe's
-/// together, so that
+/// The functions that the materials of a basis share, as sums of functions of the halfway form:
+/// channel 0 is the mean, channel k the step times component k - 1, each the smooth part and the
+/// lobe's together, so that
 ///     ln(f + logOffset) = min(Phi_0 + sum_k q_k Phi_k, ln(logOffset) + t / topsPerLog).
 Representation sharedFunctions(const Basis& basis);
 
@@ -18,8 +18,8 @@ struct TexelPart {
     std::size_t function = 0;
     double scale = 1;
 };
-/// Those of a material, but for its last texel, which has t: one for each component, and two for
-/// those of more than 12 bits, since halves hold whole numbers up to 2048.
+/// Numbers of a material, but for its last texel, which has t: one for each component, and two
+/// for components of more than 12 bits, since halves hold whole numbers up to 2048.
 std::vector<TexelPart> texelParts(const Basis& basis);
 
 /// The texels of a material with codes; a grey one has its numbers three times.

@@ -41,7 +41,7 @@ public:
     /// Neighbours of a level, linear[texel][linear()].
     virtual EncodedRange encode(std::size_t level, std::span<const float> linear,
                                 const EncodedTexels& to) const = 0;
-    /// What texels share, as MapSidecar has it; empty: nothing.
+    /// Shapes and materials that texels share, as MapSidecar has them; empty: none.
     virtual std::span<const double> shapes() const { return {}; }
     virtual std::span<const float> centres() const { return {}; }
     /// All texels of a level, before they are encoded; by the first process alone, of the levels

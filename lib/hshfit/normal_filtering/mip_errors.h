@@ -33,7 +33,7 @@ struct MipErrorOptions {
     int outgoing = 16;  ///< from the normal to 88 degrees
     int incoming = 64;  ///< half of them about the mirror direction, half over the hemisphere
     std::uint64_t seed = 1;
-    std::vector<int> orders = {};  ///< of harmonics; empty: that of the layout
+    std::vector<int> orders = {};  ///< of harmonics; empty: as in the layout
     bool harmonics = true;         ///< whether forms of harmonics are measured
     bool atMeanNormal = false;     ///< also the forms with M at the mean normal (MipUse::facets)
     /// Whether base texels count by the area that wo sees of them, max(0, n.wo) / n.z, rather than

@@ -55,7 +55,7 @@ struct Comparison {
     OutgoingSet outgoing;
     std::vector<MetricValue> metrics;
     std::optional<PictureError> picture = {};
-    Channels channels;               ///< of the comparison: those of the two with more
+    Channels channels;               ///< of the comparison: of the BRDF with more
     std::vector<std::size_t> drawn;  ///< of these, at most 4
     /// f(theta_i) in the plane of incidence; negative angles on the side of the outgoing direction.
     std::vector<ComparisonCurve> polar;
@@ -89,7 +89,7 @@ Comparison makeComparison(const Brdf& reference, const Brdf& approximation,
 std::vector<std::string> writeComparison(const Comparison& comparison, const std::string& folder);
 
 /// The files of a comparison in a set with others, which is yet to be committed, and why figures
-/// are not among them. `opening` is HTML of the caller, sections in front of those of the page.
+/// are not among them. `opening` is HTML of the caller, sections in front of the page's.
 struct AddedComparison {
     std::vector<std::string> names;
     std::optional<std::string> undrawn;

@@ -48,7 +48,7 @@ bool isText(std::string_view text) {
 }
 
 /// The first numbers of a table can begin like a picture, so that what has to follow two or three
-/// bytes is asked for: the width or a line of text after those of PNM, a program and a
+/// bytes is asked for: the width or a line of text after the bytes of PNM, a program and a
 /// line of text in Radiance HDR, a marker in JPEG, zeros and the size of a header in BMP.
 bool starts(std::string_view head, const PictureFormat& format) {
     if (!head.starts_with(format.start)) return false;
@@ -247,7 +247,7 @@ struct PictureFile::State {
     MappedFile mapped;
     std::string_view format;
     std::unique_ptr<ImageModulePicture> image;
-    int left = 0, above = 0;         ///< stored columns and rows before those of the picture
+    int left = 0, above = 0;         ///< stored columns and rows before the picture's
     std::vector<float> stored = {};  ///< of some rows, where more is stored than the picture
 };
 

@@ -211,7 +211,7 @@ struct SeenBrdf {
             albedos.push_back(shown(colours(values.data())));
         }
     }
-    /// Lines are ordered by azimuth: those of an isotropic BRDF stand for all azimuths.
+    /// Lines are ordered by azimuth: the lines of an isotropic BRDF stand for all azimuths.
     const std::vector<Rgb>& line(std::size_t k) const { return lines[k % lines.size()]; }
     const std::vector<Rgb>& ridge(std::size_t k) const { return ridges[k % ridges.size()]; }
 };

@@ -28,9 +28,9 @@ struct SeenDifference {
 /// Spheres 4 degrees wide of both are drawn under `pictureLights()`. `flip` is HDR-FLIP (Andersson
 /// et al. 2021, 10.1145/3478512.3480938): in each pixel the largest FLIP (flip.h) over up to four
 /// exposures, from that which shows half of the lit pixels of the source's sphere below 0.8 of
-/// white to that of its brightest pixel; 0 to 1, the mean over the lit part of the sphere. `colour`
-/// is CIEDE2000 at the exposure that shows 95 % of the pixels below 0.8 of white, at most nine
-/// stops above that of the brightest pixel; the mean over the sphere.
+/// white to the exposure of its brightest pixel; 0 to 1, the mean over the lit part of the sphere.
+/// `colour` is CIEDE2000 at the exposure that shows 95 % of the pixels below 0.8 of white, at most
+/// nine stops above the exposure of the brightest pixel; the mean over the sphere.
 ///
 /// Shape, along `highlightLines()` and for each channel: the deepest dip and the highest peak that
 /// the source does not have (false_extrema.h) of ln(g + m / 20 + 0.001), m the largest channel, as

@@ -14,7 +14,7 @@ namespace hshfit::inline precomputed_transfer {
 struct ClusterError {
     std::size_t clusters = 0, components = 0;
     std::size_t bytes = 0;     ///< of float32 means, components and weights, and of cluster numbers
-    double relativeL2 = 0;     ///< root of the sum of squares over that of the matrices
+    double relativeL2 = 0;     ///< root of the sum of squares over the matrices'
     double largest = 0;        ///< of a vertex, over the root of the mean square
     std::uint32_t vertex = 0;  ///< of the largest
 };
@@ -45,7 +45,7 @@ struct ClusterOptions {
     std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 
-/// Clusters start as those of k-means over 24 principal coordinates of all matrices. Clusters
+/// Clusters start as k-means finds them over 24 principal coordinates of all matrices. Clusters
 /// with fewer vertices than components have zeros in the rest. The result does not depend on the
 /// number of threads. Throws UsageError without matrices or clusters.
 MatrixClusters clusterMatrices(const TransferView& transfer, const ClusterOptions& options = {});

@@ -48,7 +48,7 @@ struct AzimuthTable {
 
     /// Azimuths number first to first + howMany - 1.
     void fill(int order, const AzimuthSpacing& spacing, std::size_t first, std::size_t howMany);
-    /// Azimuths at nodes t with the weights of their own, before those of the spacing's map.
+    /// Azimuths at nodes t with the weights of their own, before the weights of the spacing's map.
     void fill(int order, const AzimuthSpacing& spacing, std::span<const double> t,
               std::span<const double> ofNodes);
 
@@ -56,7 +56,7 @@ private:
     void fillRows(int order);
 };
 
-/// Number of azimuths in a table: those of a quadrant or, if clustered, of half of the circle.
+/// Number of azimuths in a table: of a quadrant or, if clustered, of half of the circle.
 inline std::size_t tableSize(const AzimuthSpacing& spacing) {
     return spacing.azimuths / (spacing.squeeze > 0 ? 2 : 4);
 }

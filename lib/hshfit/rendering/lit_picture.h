@@ -25,7 +25,7 @@ struct LitPicture {
     /// to the next, for the given coefficients, and the error of a table of normals.
     double error = 0;
     /// By integration, the largest estimated error of a pixel, over its radiance or, if that is
-    /// more, a twentieth of the picture's mean; `picture.error` has that of every pixel.
+    /// more, a twentieth of the picture's mean; `picture.error` has the error of every pixel.
     struct Largest {
         double error = 0;
         std::size_t column = 0, row = 0;
@@ -58,7 +58,7 @@ struct CoefficientShading {
 /// Radiance from coefficients over wi, for each of `materials`:
 ///     L(wo) = sum over l, m of c_{l,m}(wo) E_{l,m},   E = integral of L_i B_{l,m} w d omega_i
 /// over the hemisphere about each point's normal, with w = cos(theta_i) for coefficients of f and 1
-/// for those of f cos(theta_i). E is made of samples of the lights above each normal, not of
+/// for coefficients of f cos(theta_i). E is made of samples of the lights above each normal, not of
 /// rotated coefficients; where there are many points, E of pictures is interpolated between normals
 /// a few degrees apart, but for cells where that changes radiance by more than a quarter of the
 /// tolerance. c is interpolated in the materials' outgoing sets. All materials share
@@ -71,7 +71,7 @@ std::vector<LitPicture> renderByCoefficients(std::span<const Coefficients* const
 
 /// The distance of an approximation from a reference picture of the same surface.
 struct PictureDifference {
-    double relativeL2 = 0;  ///< root of the mean square of the difference over that of reference
+    double relativeL2 = 0;  ///< root mean square of the difference over the reference's
     double maximum = 0;     ///< the largest difference of a pixel and colour / meanRadiance
     std::size_t column = 0, row = 0;  ///< of the maximum
     double meanRadiance = 0;          ///< of the reference, over the surface and R, G, B

@@ -39,10 +39,10 @@ struct SurfacePoints {
 /// perspective its outline has that radius.
 SurfacePoints spherePoints(const View& view, int size, int samples);
 
-/// A mesh, framed so that its extent in the picture is that of the sphere; in perspective, that of
+/// A mesh, framed so that its extent in the picture is the sphere's; in perspective, the extent of
 /// its nearest plane. Normals are interpolated
-/// between corners; they are those of the side that is seen, and bent towards the viewer where they
-/// would turn away, to a cosine of 0.01. Without shadows or reflections of the mesh in itself.
+/// between corners; they belong to the side that is seen, and are bent towards the viewer where
+/// they would turn away, to a cosine of 0.01. Without shadows or reflections of the mesh in itself.
 SurfacePoints meshPoints(const Mesh& mesh, const View& view, int size, int samples);
 
 /// The axes of a surface with that normal. The tangent is horizontal, along z x n (+x where n is

@@ -17,14 +17,14 @@ public:
     explicit HemisphereGram(const Basis& basis);
 
     bool identity() const { return factors_.empty(); }
-    /// The largest over m, of R; that of G is the square.
+    /// The largest over m, of R; the condition of G is the square.
     double condition() const { return condition_; }
 
     /// c -> R c, whose Euclidean norm is the L2 norm of sum c_i B_i over the hemisphere.
     void whiten(double* slots) const;
     /// R c -> c. Loses `condition()` times the rounding.
     void unwhiten(double* slots) const;
-    /// b -> R^-T b, so that the product with whitened coefficients is that of b with c.
+    /// b -> R^-T b, so that the product with whitened coefficients is the product of b and c.
     void whitenFunctional(double* slots) const;
 
 private:

@@ -37,12 +37,12 @@ struct Sweep {
     bool reciprocal = true;
 };
 
-/// The outgoing sets of a sweep: its own, or those of its default for this BRDF.
+/// The outgoing sets of a sweep: its own, or its default for this BRDF.
 std::vector<std::string> outgoingSets(const Sweep& sweep, const Brdf& brdf);
 
 /// Every combination that `requireConsistent` accepts, none twice: what a kind does not have does
 /// not multiply it. Ranks that cannot make less of a form, and the reciprocal half of f
-/// cos(theta_i), are left out. The order is that of the lists.
+/// cos(theta_i), are left out. The lists give the order.
 std::vector<Form> formsOf(const Sweep& sweep, const Brdf& brdf);
 
 }  // namespace hshfit::tradeoff

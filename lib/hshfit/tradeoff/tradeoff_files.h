@@ -23,7 +23,7 @@ void writeTradeoffs(std::span<const Tradeoff> trades, const std::string& folder)
 void writeTradeoffs(std::span<const Tradeoff> trades, FileSet& files);
 
 /// The document of tradeoff.json (docs/schemas/tradeoff.schema.json), with a line feed at the end.
-/// With `timing`, that of timing.json is its member "timing", for a single document.
+/// With `timing`, the document of timing.json is its member "timing", for a single document.
 std::string tradeoffJson(std::span<const Tradeoff> trades, bool timing = false);
 std::string timingJson(std::span<const Tradeoff> trades);
 

@@ -25,7 +25,7 @@ struct TableSize {
 /// the cube: m = 0 is horizon = 1 everywhere. Functions of a pair that are isotropic, reciprocal
 /// and mirror symmetric are functions of these three; along them the terms of the halfway form have
 /// no bends sharper than elsewhere, neither at the horizon nor in the mirror direction. Shares and
-/// exponents are those of the least errors over four libraries, of models and of measured tables.
+/// exponents have the least errors over four libraries, of models and of measured tables.
 struct TablePlace {
     static constexpr double halfBend = 0.3, planeBend = 0.65;
     /// They keep quotients finite; no function depends on kappa where the second counts.
@@ -64,7 +64,7 @@ private:
     TableSize size_;
     HalfwayAxes axes_;
     Texels texels_;
-    std::vector<float> values_;  ///< those of the texels
+    std::vector<float> values_;  ///< of the texels
 };
 
 }  // namespace hshfit::gpu::inline forms

@@ -23,7 +23,7 @@ constexpr int maxLevel = 20;
 /// Rounding of sums over all nodes, relative; and the accuracy of basis functions and of models'
 /// formulas, below which no error is stated.
 constexpr double rounding = 1e-14, accuracyOfValues = 1e-12;
-/// Tolerances from here on are those of interpolated tables (Brdf::defaultTolerance).
+/// Tolerances from here on belong to interpolated tables (Brdf::defaultTolerance).
 constexpr double interpolated = 1e-4;
 /// Changes that a panel has to show before they are believed: a small one, or two, may be an
 /// accident. Interpolated tables state a multiple of their error, which covers such accidents.
@@ -142,7 +142,7 @@ private:
                          .squeezed = true,
                          .even = options_.even},
                         panel.curves);
-            // Rounded up to a multiple of 4, those of level 0 may be as many, and show no change.
+            // Rounded up to a multiple of 4, level 0 may have as many azimuths, and show no change.
             HemisphereGrid::Panel& last = grid_.panels.back();
             if (panel.level < 0 && last.cuts.empty()) last.azimuths.spacing.azimuths -= 4;
         }

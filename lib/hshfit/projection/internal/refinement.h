@@ -22,10 +22,10 @@ struct RefinedMoments {
     PerInner energy{};                         ///< integral of q^2, summed over channels
     PerInner energyError{};                    ///< absolute
     double error = 0;                          ///< relative, the larger of moments and energy
-    /// Per basis: the relative error of its coefficients by that of its moments, 1 unless a Gram
-    /// system is solved, whose small eigenvalues enlarge it.
+    /// Per basis: the relative error of its coefficients by the error of its moments, 1 unless a
+    /// Gram system is solved, whose small eigenvalues enlarge it.
     std::vector<double> enlargement;
-    std::vector<double> rounding;  ///< per basis: that of f, as the Gram system enlarges it
+    std::vector<double> rounding;  ///< per basis: the rounding of f, as the Gram system enlarges it
     std::size_t evaluations = 0;
     HorizonBehaviour horizon;
 };

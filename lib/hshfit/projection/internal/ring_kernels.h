@@ -16,7 +16,7 @@ struct QuadrantFold {
 /// the sum of their squares.
 double foldRing(const double* values, std::size_t count, const QuadrantFold& out);
 /// The same for a ring that is even in phi, with values at phi and pi - phi only; `s1` and `s0` are
-/// not written, and the sum of squares is that of the half ring.
+/// not written, and the sum of squares is over the half ring.
 double foldHalfRing(const double* values, std::size_t count, const QuadrantFold& out);
 
 /// A ring of clustered azimuths: values at phi and then at -phi, `count` each, into sums `even` and
@@ -26,8 +26,8 @@ double foldSqueezedRing(const double* values, const double* weights, std::size_t
                         double* even, double* odd);
 
 /// Directions of one ring. `fillRing`: quadrant after quadrant in the order of QuadrantFold, 4
-/// copies, or 2 for half a ring; `cosine` and `sine` are those of the first quadrant's azimuths.
-/// `fillSqueezedRing`: those of azimuths about the centre, then of their mirror images, 2 copies,
+/// copies, or 2 for half a ring; `cosine` and `sine` belong to the first quadrant's azimuths.
+/// `fillSqueezedRing`: azimuths about the centre, then their mirror images, 2 copies,
 /// or 1 for half a ring.
 struct RingDirections {
     const double *cosine, *sine;

@@ -46,9 +46,9 @@ struct HalfwayCounts {
 ///     smooth: d = i + 2 k + 3 a + 2 b + 2 Q, those with d / A + j / ceil(D / 2) <= 6/5 and
 ///             j < ceil(D / 2)
 ///     lobe:   d = k + a + b + Q, those with i < H, j < D and i / H + j / D + 10 d / (3 A) <= 23/20
-/// Sets of smaller orders are contained in those of larger ones. Left out are: isotropic, q > 0;
+/// Sets of smaller orders are contained in sets of larger ones. Left out are: isotropic, q > 0;
 /// isotropic and bilateral, b = 1; bilateral otherwise, odd q, and cosines with b = 1 and sines
-/// with b = 0; reciprocal, a != b. Stored are the smooth terms, then those of the lobe, each by
+/// with b = 0; reciprocal, a != b. Stored are the smooth terms, then the lobe's terms, each by
 /// rising d + j (lobe: i + j + d), then j, k, i, q, exchange, mirror, sine.
 class HalfwayTerms {
 public:

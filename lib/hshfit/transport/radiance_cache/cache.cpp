@@ -262,7 +262,7 @@ Rgb RadianceCache::irradianceAt(const Record& record, const SurfaceHit& hit) con
     return light;
 }
 
-/// The coefficients of light in the record's frame times those of f cos(theta_i) turned into it:
+/// The coefficients of light in the record's frame times f cos(theta_i) turned into it:
 /// Eq. 24 with the transposed rotation on the other factor, of which there are fewer vectors.
 void RadianceCache::addDotProduct(const Near& near, const SurfaceHit& hit,
                                   const MaterialLight& material, const std::vector<float>& lobe,
@@ -355,7 +355,7 @@ Gathered RadianceCache::gatheredAt(const SurfaceHit& hit, double height, std::ui
                            .longRadius = least};
         if (!(errorOf(there, hit.position, hit.frame.normal) < options_.accuracy)) place.reset();
     }
-    // Beyond those of the surfaces' points, whatever their number.
+    // Beyond the keys of the surfaces' points, whatever their number.
     const RandomNumbers random(options_.seed, (std::uint64_t{1} << 40) + n);
     return gather(place.value_or(hit), kind, materials_.kinds[kind], strata_[kind],
                   options_.gradient, gathering, random, rays);

@@ -12,7 +12,7 @@
 
 namespace hshfit::inline transport::inline radiance_cache {
 
-/// Defaults are those of the smallest error for the time; the paper's are `asPublished`.
+/// Defaults give the smallest error for the time; the paper's are `asPublished`.
 struct CacheOptions {
     MaterialChoiceOptions choice = {};
     int rays = 2000;        ///< of a record, at most (HemisphereStrata)
@@ -76,7 +76,7 @@ public:
     Trial trial(const SurfaceHit& hit, double height, std::uint64_t n) const;
 
     /// Makes records at hits at once, in parallel, and adds them in that order. `heights` are
-    /// those of the picture there. None is added where its numbers are not finite, or its rays
+    /// the picture's there. None is added where its numbers are not finite, or its rays
     /// would start on another surface.
     void make(const std::vector<SurfaceHit>& hits, const std::vector<double>& heights);
     /// Keeps the reach of the records as it is: what they cover stays covered when more are made.

@@ -18,9 +18,10 @@ struct CachedPicture {
 };
 
 /// Makes the records that a camera needs and takes its picture by them. Records are made in rounds
-/// from a coarse raster of pixels to each pixel: those of a round in parallel, their places and
+/// from a coarse raster of pixels to each pixel: all of a round in parallel, their places and
 /// order by the pixels alone, so that nothing depends on the number of threads. `error` is the
-/// standard error by the samples of a pixel; that of the records, which they share, is not in it.
+/// standard error by the samples of a pixel; the error of the records, which they share, is not in
+/// it.
 CachedPicture takePicture(RadianceCache& cache, const Camera& camera,
                           const CachedPictureOptions& options);
 

@@ -13,8 +13,8 @@ namespace hshfit::inline representation::inline halfway {
 
 class HalfwayExpansion;
 
-/// The rows of a block's table, one for each function of its pairs: those of the mean from 0 on,
-/// then those of the other axes and the factors.
+/// The rows of a block's table, one for each function of its pairs: rows of the mean from 0 on,
+/// then rows of the other axes and the factors.
 struct HalfwayRows {
     std::uint16_t x, v, product, powers, harmonics, gap, handed, above, weight, count;
 };
@@ -44,7 +44,7 @@ struct HalfwayLayout {
     int harmonics = 0;  ///< the largest q
     std::size_t channels = 0;
     std::vector<Run> runs;
-    std::size_t smoothRuns = 0;  ///< those of the smooth exponent, which come first
+    std::size_t smoothRuns = 0;  ///< runs of the smooth exponent, which come first
     std::size_t stored = 0;      ///< coefficients of a channel, with the padding of their runs
     std::vector<T> values;       ///< [group of three channels], and in it as its runs say
     std::vector<T> ceilings;     ///< [channel][smooth, lobe, top]
