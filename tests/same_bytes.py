@@ -13,6 +13,7 @@ import json
 import os
 import resource
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -90,6 +91,7 @@ def check(old, pattern):
     environment = {**os.environ, "TMPDIR": str(temporary), "SAME_BYTES_OLD": str(old),
                    "SAME_BYTES_NEW": str(new), "SAME_BYTES_LOG": str(log),
                    "SAME_BYTES_WORK": str(work), "SAME_BYTES_FOLDERS": f"{temporary}:{TOP / 'out'}"}
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # the program is put back
     # A new file in place of the program, so that a running copy is not written over.
     PROGRAM.unlink()
     script = Path(__file__).resolve()
