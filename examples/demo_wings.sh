@@ -36,8 +36,7 @@ show eval out/coin/material.json:x=32,y=32 --wi 30,180 --wo 20,0
 holds "the texel is copper: red before green before blue" \
     "$(awk '{ f[$1] = $2 } END { print f["R"], ">", f["G"], "&&", f["G"], ">", f["B"], "&&",
                                        f["B"], "> 0" }' out/answer.txt)"
-show svbrdf examples/maps/coin.json -o out/coin-library --form library --components 7 \
-    --seconds 2 --force
+show svbrdf examples/maps/coin.json -o out/coin-library --form library --components 7 --force
 holds "in a library every texel is within 6 % of the model itself" \
     "$(number 'level  0: .* % mean, @ % at most') < 6"
 
