@@ -91,9 +91,7 @@ private:
             case Target::Kind::viewer:
                 return writeViewer();
             case Target::Kind::mips:
-                for (const std::string& line : map_->writeMips(result_.name, files_))
-                    listener_.say(line);
-                return;
+                return writeMips();
             case Target::Kind::renderer:
             case Target::Kind::material:
             case Target::Kind::module:
@@ -112,6 +110,18 @@ private:
         const auto made = container == "ktx2" ? map_->writeKtx2(result_.name, files_)
                                               : map_->writeExr(result_.name, files_);
         result_.textures.insert(result_.textures.end(), made.begin(), made.end());
+    }
+
+    void writeMips() {
+        for (const OrdinaryMips& made : map_->writeMips(result_.name, files_)) {
+            const bool normal = made.role == "normal";
+            const double unit = normal ? degrees(1.0) : 1;
+            listener_.say(fmt::format(
+                "{}: {} bytes, {} by compression {:.3g} in the mean, {:.3g} at most{}", made.path,
+                made.bytes, normal ? "degrees" : "error", unit * made.meanError,
+                unit * made.largestError, normal ? "" : ", from 0 to 1"));
+            result_.texts.push_back({made.role, "mips", made.path});
+        }
     }
 
     void writeShader(const std::string& name) {

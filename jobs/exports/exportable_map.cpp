@@ -6,7 +6,6 @@
 #include <hshfit/filtered_maps/exports/filtered_export.h>
 #include <hshfit/filtered_maps/exports/filtered_sampler.h>
 #include <hshfit/filtered_maps/exports/filtered_shader.h>
-#include <hshfit/filtered_maps/exports/ordinary_mips.h>
 #include <hshfit/library_maps/exports/library_map_export.h>
 #include <hshfit/material_maps/exports/map_viewer.h>
 
@@ -163,18 +162,8 @@ public:
     std::vector<MapTextureFile> writeExr(const std::string& name, FileSet& files) const override {
         return writeFilteredExr(map_, name, files);
     }
-    std::vector<std::string> writeMips(const std::string& name, FileSet& files) const override {
-        std::vector<std::string> lines;
-        for (const OrdinaryMips& made : writeOrdinaryMips(map_, name, files)) {
-            const bool normal = made.role == "normal";
-            lines.push_back(
-                fmt::format("{}: {} bytes, {} by compression {:.3g} in the mean, {:.3g} at most{}",
-                            made.path, made.bytes, normal ? "degrees" : "error",
-                            normal ? degrees(made.meanError) : made.meanError,
-                            normal ? degrees(made.largestError) : made.largestError,
-                            normal ? "" : ", from 0 to 1"));
-        }
-        return lines;
+    std::vector<OrdinaryMips> writeMips(const std::string& name, FileSet& files) const override {
+        return writeOrdinaryMips(map_, name, files);
     }
     std::string shader(gpu::Language language, const std::string& prefix, int) const override {
         return filteredShader(language, map_.sidecar(), text_, {.prefix = prefix, .wrap = wrap_});
@@ -202,7 +191,7 @@ private:
 
 }  // namespace
 
-std::vector<std::string> ExportableMap::writeMips(const std::string& name, FileSet&) const {
+std::vector<OrdinaryMips> ExportableMap::writeMips(const std::string& name, FileSet&) const {
     throw UsageError(fmt::format(
         "{}: the target mips is of maps of normals or directions, as svbrdf filters them", name));
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <hshfit/filtered_maps/exports/ordinary_mips.h>
 #include <hshfit/gpu/shader.h>
 #include <hshfit/gpu/viewer_light.h>
 #include <hshfit/material_maps/exports/map_export.h>
@@ -32,9 +33,8 @@ public:
     virtual std::vector<MapTextureFile> writeKtx2(const std::string& name,
                                                   FileSet& files) const = 0;
     virtual std::vector<MapTextureFile> writeExr(const std::string& name, FileSet& files) const = 0;
-    /// Mips for an engine's own material; a line for each file. Throws UsageError for maps without
-    /// normals.
-    virtual std::vector<std::string> writeMips(const std::string& name, FileSet& files) const;
+    /// Mips for an engine's own material. Throws UsageError for maps without normals.
+    virtual std::vector<OrdinaryMips> writeMips(const std::string& name, FileSet& files) const;
     virtual std::string shader(gpu::Language language, const std::string& prefix,
                                int environmentOrder) const = 0;
     /// Whether shaders and the page take the light of an environment.

@@ -676,6 +676,7 @@ def illuminate(
     reference: Optional[Path] = ...,
     exposure: Optional[float] = ...,
     resume: bool = ...,
+    seconds: Optional[float] = ...,
     force: bool = ...,
     records: Optional[Path] = ...,
     basis: str = ...,
@@ -716,6 +717,7 @@ def transfer(
     materials: Names = ...,
     camera: str = ...,
     resume: bool = ...,
+    seconds: Optional[float] = ...,
     force: bool = ...,
     progress: Progress = ...,
 ) -> Row: ...

@@ -139,9 +139,11 @@ TEST_F(FilteredMap, ExportsKeepTheirSchemasAndTheirValuesAreThoseOfEval) {
         ASSERT_EQ(made("-o " + path("map") + " --force --checks 0 --form " + form).code, 0);
         const Answer answer =
             run("export " + path("map/material.json") + " -o " + path("out") +
-                " --force --json --target ktx2,exr-parts,glsl-es,glsl,hlsl,slang,wgsl,metal,osl");
+                " --force --json --target mips,ktx2,exr-parts,glsl-es,glsl,hlsl,slang,wgsl,metal,"
+                "osl");
         ASSERT_EQ(answer.code, 0) << answer.err;
         EXPECT_TRUE(keepsSchema(answer.out, "export_map"));
+        EXPECT_NE(answer.out.find("\"role\": \"normal\""), std::string::npos) << answer.out;
         EXPECT_TRUE(keepsSchema(bytes("out/material.hsh.json"), "gpu_filtered_map"));
         EXPECT_TRUE(keepsSchema(bytes("out/material_test.json"), "gpu_map_test"));
         EXPECT_EQ(bytes("out/material.map.ktx2"), bytes("map/material.ktx2"));
