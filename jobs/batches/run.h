@@ -54,8 +54,8 @@ std::vector<std::size_t> itemsOfShard(const Manifest& manifest, const BatchProgr
 /// Makes the items of a manifest, or a shard of them, in `folder`/items/NAME: the result of the
 /// command, answer.json (what it prints as JSON) and record.json. Results whose inputs, options
 /// and version of the program are as they were are kept. A failed item does not stop the others;
-/// failed items are tried again by the next run, and those begin that the time did not suffice for.
-/// Results do not depend on shards or processes.
+/// the next run tries failed items again, and begins the items that no time was left for. Results
+/// do not depend on shards or processes.
 ///
 /// Forks: the process must have no other threads. Throws InputError for a manifest that cannot be
 /// read, UsageError, OutputError.

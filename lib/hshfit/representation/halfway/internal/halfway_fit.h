@@ -45,7 +45,7 @@ struct HalfwayData {
 };
 
 /// The terms at pairs of directions, which no coefficient changes. The terms of the first pairs are
-/// `held`, as many as take little memory; those of the others are computed when they are asked for.
+/// `held`, as many as take little memory; the others are computed when they are asked for.
 class HalfwayProducts {
 public:
     HalfwayProducts(const HalfwayModel& model, const std::vector<DirectionPair>& pairs, bool held);
