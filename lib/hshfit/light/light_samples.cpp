@@ -5,6 +5,7 @@
 #include <hshfit/light/internal/cap_nodes.h>
 #include <hshfit/light/internal/node_levels.h>
 #include <hshfit/light/internal/sky_nodes.h>
+#include <hshfit/light/panel_plane.h>
 #include <hshfit/light/picture_light.h>
 #include <hshfit/light/sky.h>
 #include <hshfit/quadrature/quadrature.h>
@@ -24,20 +25,6 @@ struct Axes {
           along{-std::sin(phi), std::cos(phi), 0} {}
     Direction pole, down, along;
 };
-
-/// The direction to a point of the panel's plane, at distance 1; x and y in units of half the size.
-struct PanelPoint {
-    Direction direction;
-    double solidAngle = 0;  ///< per area of [-1, 1]^2
-};
-PanelPoint panelPoint(const PanelLight& light, const Axes& axes, double x, double y) {
-    const double halfWidth = std::tan(light.width / 2), halfHeight = std::tan(light.height / 2);
-    const double px = x * halfWidth, py = y * halfHeight;
-    const double c = std::cos(light.turn), s = std::sin(light.turn);
-    const double squared = 1 + px * px + py * py;
-    return {normalised(axes.pole + (c * px - s * py) * axes.along + (s * px + c * py) * axes.down),
-            halfWidth * halfHeight / (squared * std::sqrt(squared))};
-}
 
 struct RadianceFrom {
     const Direction& world;
@@ -89,12 +76,12 @@ struct AddNodes {
     }
 
     void operator()(const PanelLight& light) const {
-        const Axes axes(light.towards);
+        const PanelPlane plane(light);
         const GaussRule& across = gaussLegendre(nodesAtLevel(4 + 4 * light.width, level));
         const GaussRule& down = gaussLegendre(nodesAtLevel(4 + 4 * light.height, level));
         for (std::size_t i = 0; i < across.nodes.size(); ++i) {
             for (std::size_t j = 0; j < down.nodes.size(); ++j) {
-                const PanelPoint point = panelPoint(light, axes, across.nodes[i], down.nodes[j]);
+                const PanelPlane::Point point = plane.at(across.nodes[i], down.nodes[j]);
                 samples.add(frame.toLocal(point.direction), light.radiance,
                             across.weights[i] * down.weights[j] * point.solidAngle);
             }
@@ -159,10 +146,10 @@ struct AddLattice {
         }
     }
     void operator()(const PanelLight& light) const {
-        const Axes axes(light.towards);
+        const PanelPlane plane(light);
         for (std::size_t k = 0; k < points; ++k) {
             const auto [u, v] = latticePoint(k);
-            const PanelPoint point = panelPoint(light, axes, 2 * u - 1, 2 * v - 1);
+            const PanelPlane::Point point = plane.at(2 * u - 1, 2 * v - 1);
             samples.add(frame.toLocal(point.direction), light.radiance,
                         4 * point.solidAngle / static_cast<double>(points));
         }
@@ -194,6 +181,22 @@ private:
 };
 
 }  // namespace
+
+PanelPlane::PanelPlane(const PanelLight& light) {
+    const Axes axes(light.towards);
+    const double width = std::tan(light.width / 2), height = std::tan(light.height / 2);
+    const double c = std::cos(light.turn), s = std::sin(light.turn);
+    pole_ = axes.pole;
+    across_ = width * (c * axes.along + s * axes.down);
+    down_ = height * (c * axes.down - s * axes.along);
+    area_ = width * height;
+}
+
+PanelPlane::Point PanelPlane::at(double x, double y) const {
+    const Direction point = pole_ + x * across_ + y * down_;
+    const double squared = dot(point, point), distance = std::sqrt(squared);
+    return {(1 / distance) * point, area_ / (squared * distance)};
+}
 
 Frame::Frame(const Orientation& orientation) {
     const Axes axes(orientation.theta, orientation.phi);

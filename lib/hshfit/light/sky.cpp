@@ -1,6 +1,7 @@
 #include <hshfit/light/sky.h>
 
 #include <hshfit/brdf/colour.h>
+#include <hshfit/brdf/vectors.h>
 #include <hshfit/light/internal/hosek_wilkie_sky.h>
 #include <hshfit/light/light_samples.h>
 
@@ -35,11 +36,6 @@ double shapeAt(const SkyShape& s, double cosTheta, double chi) {
     const double gradation = 1 + (cosTheta > 0 ? s.a * std::exp(s.b / cosTheta) : 0);
     const double cosChi = std::cos(chi);
     return gradation * (1 + s.c * (std::exp(s.d * chi) - s.offset) + s.e * cosChi * cosChi);
-}
-
-double angleBetween(const Direction& a, const Direction& b) {
-    const double x = a.y * b.z - a.z * b.y, y = a.z * b.x - a.x * b.z, z = a.x * b.y - a.y * b.x;
-    return std::atan2(std::hypot(x, y, z), dot(a, b));
 }
 
 double relativeTo(const SkyShape& shape, const Direction& sun, const Direction& world) {

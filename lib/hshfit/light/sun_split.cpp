@@ -1,5 +1,6 @@
 #include <hshfit/light/sun_split.h>
 
+#include <hshfit/brdf/vectors.h>
 #include <hshfit/error.h>
 #include <hshfit/files/exr_picture.h>
 #include <hshfit/light/internal/picture_filling.h>
@@ -139,10 +140,6 @@ private:
         const auto next = geometry_.neighbour(place.second, place.first, right, down);
         if (!next) return {};
         return Place((*next)[1], (*next)[0]);
-    }
-
-    static double angleBetween(const Direction& a, const Direction& b) {
-        return 2 * std::asin(std::min(std::hypot(a.x - b.x, a.y - b.y, a.z - b.z) / 2, 1.0));
     }
 
     /// Whether no pixel of a row can be that near; rows of other layouts than latlong may.

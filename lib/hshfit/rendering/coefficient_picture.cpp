@@ -34,7 +34,7 @@ std::vector<Light> withoutCostlySkies(std::span<const Light> lights) {
     std::vector<Light> result;
     for (const Light& light : lights) {
         const auto* sky = std::get_if<SkyLight>(&light);
-        result.push_back(sky && sky->peaked() ? withSkyPictures({&light, 1}).front() : light);
+        result.push_back(sky && sky->peaked() ? skyPicture({&light, 1}) : light);
     }
     return result;
 }

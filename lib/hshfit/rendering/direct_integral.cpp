@@ -1,6 +1,8 @@
 #include <hshfit/rendering/direct_integral.h>
 
+#include <hshfit/brdf/vectors.h>
 #include <hshfit/rendering/internal/light_cells.h>
+#include <hshfit/rendering/internal/panel_cells.h>
 
 #include <algorithm>
 #include <cmath>
@@ -33,10 +35,11 @@ double widestAtHorizon(double tolerance) {
     return std::min(0.2, 0.42 * std::sqrt(tolerance));
 }
 
-/// Whether a cell is too wide beside a lobe for its four parts to show what is there.
-bool tooWide(double width, const Direction& local, std::span<const Peak> peaks) {
+/// Whether a cell of so many nodes along a side is too wide beside a lobe for its four parts to
+/// show what is there.
+bool tooWide(double width, int nodesAcross, const Direction& local, std::span<const Peak> peaks) {
     return std::ranges::any_of(peaks, [&](const Peak& peak) {
-        if (width <= peak.width) return false;
+        if (width <= nodesAcross * peak.width) return false;
         // The chord, which is no longer than the arc.
         const double x = local.x - peak.towards.x, y = local.y - peak.towards.y,
                      z = local.z - peak.towards.z;
@@ -52,12 +55,15 @@ public:
 
     void clear() {
         for (auto* v : {&x_, &y_, &z_}) v->clear();
+        flux_.clear();
     }
-    void add(const Direction& local) {
+    void add(const Direction& local, const Rgb& flux) {
         x_.push_back(local.x);
         y_.push_back(local.y);
         z_.push_back(local.z);
+        flux_.push_back(flux);
     }
+    std::size_t count() const { return x_.size(); }
     void evaluate() {
         f_.resize(channels_ * x_.size());
         if (x_.empty()) return;
@@ -69,13 +75,15 @@ public:
             ++result_.notFinite;
         }
     }
-    Rgb value(std::size_t k, const Rgb& flux) const {
-        Rgb value{};
-        if (!(z_[k] > 0)) return value;
-        for (std::size_t c = 0; c < 3; ++c) {
-            value[c] = flux[c] * z_[k] * f_[(channels_ == 1 ? 0 : c) * x_.size() + k];
+    /// The sum over directions first to last - 1.
+    Rgb sum(std::size_t first, std::size_t last) const {
+        Rgb sum{};
+        for (std::size_t k = first; k < last; ++k) {
+            if (!(z_[k] > 0)) continue;
+            for (std::size_t c = 0; c < 3; ++c)
+                sum[c] += flux_[k][c] * z_[k] * f_[(channels_ == 1 ? 0 : c) * x_.size() + k];
         }
-        return value;
+        return sum;
     }
 
 private:
@@ -84,6 +92,7 @@ private:
     std::size_t channels_;
     PointRadiance& result_;
     std::vector<double> x_, y_, z_, f_;
+    std::vector<Rgb> flux_;
 };
 
 void add(Rgb& to, const Rgb& value) {
@@ -96,45 +105,67 @@ double distance(const Rgb& a, const Rgb& b) {
     return std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]);
 }
 
-struct Item {
-    LightCell cell;
-    Direction local;
-    Rgb value{};
-};
+constexpr int nodesAcross(const LightCells&) {
+    return 1;
+}
+constexpr int nodesAcross(const PanelCells&) {
+    return PanelCells::nodesAcross;
+}
+void addNodes(const LightCells&, const LightCell& cell, const Direction& local, const Frame&,
+              Evaluator& evaluator) {
+    evaluator.add(local, cell.flux);
+}
+void addNodes(const PanelCells& cells, const PanelCell& cell, const Direction&, const Frame& frame,
+              Evaluator& evaluator) {
+    cells.nodesOf(cell, [&](const Direction& world, const Rgb& flux) {
+        evaluator.add(frame.toLocal(world), flux);
+    });
+}
 
-/// The integral over cells at one point.
+/// The integral over cells at one point, added to `result`.
+template <class Cells, class Cell>
 class CellIntegral {
 public:
-    CellIntegral(const LightCells& cells, const Brdf& brdf, const Frame& frame, const Direction& wo,
+    CellIntegral(const Cells& cells, const Brdf& brdf, const Frame& frame, const Direction& wo,
                  const IntegrationOptions& options, PointRadiance& result)
         : cells_(cells),
           frame_(frame),
           options_(options),
-          horizon_(widestAtHorizon(options.tolerance)),
+          horizon_(nodesAcross(cells) * widestAtHorizon(options.tolerance)),
           peaks_(peaksOf(brdf, wo)),
           evaluator_(brdf, wo, result),
           result_(result) {}
 
     void run() {
         std::vector<Item> frontier;
-        for (const LightCell& cell : cells_.coarse()) addItem(cell, frontier);
+        for (const Cell& cell : cells_.coarse()) addItem(cell, frontier);
         evaluate(frontier);
         while (!frontier.empty()) frontier = refined(frontier);
     }
 
 private:
+    struct Item {
+        Cell cell;
+        Direction local;
+        Rgb value{};
+    };
+
     /// Unless all of it is below the horizon.
-    void addItem(const LightCell& cell, std::vector<Item>& items) const {
+    void addItem(const Cell& cell, std::vector<Item>& items) const {
         const Direction local = frame_.toLocal(cell.direction);
         if (local.z > -cell.width) items.push_back({cell, local});
     }
     void evaluate(std::vector<Item>& items) {
         evaluator_.clear();
-        for (const Item& item : items) evaluator_.add(item.local);
-        evaluator_.evaluate();
-        for (std::size_t k = 0; k < items.size(); ++k) {
-            items[k].value = evaluator_.value(k, items[k].cell.flux);
+        std::vector<std::size_t> first = {0};
+        first.reserve(items.size() + 1);
+        for (const Item& item : items) {
+            addNodes(cells_, item.cell, item.local, frame_, evaluator_);
+            first.push_back(evaluator_.count());
         }
+        evaluator_.evaluate();
+        for (std::size_t k = 0; k < items.size(); ++k)
+            items[k].value = evaluator_.sum(first[k], first[k + 1]);
     }
 
     /// Cuts every cell once. Parts that agree with their whole are added to the result; the others
@@ -143,7 +174,7 @@ private:
         std::vector<Item> parts;
         parts.reserve(4 * whole.size());
         std::vector<std::size_t> first = {0};
-        std::array<LightCell, 4> four;
+        std::array<Cell, 4> four;
         for (const Item& item : whole) {
             const std::size_t count = cells_.split(item.cell, four);
             for (std::size_t k = 0; k < count; ++k) addItem(four[k], parts);
@@ -163,7 +194,8 @@ private:
                 add(sums[k], parts[i].value);
                 const double width = parts[i].cell.width;
                 const bool onHorizon = width > horizon_ && std::abs(parts[i].local.z) < width;
-                if (onHorizon || tooWide(width, parts[i].local, peaks_)) forced[k] = 1;
+                if (onHorizon || tooWide(width, nodesAcross(cells_), parts[i].local, peaks_))
+                    forced[k] = 1;
             }
             if (first[k + 1] == first[k] + 1 && parts[first[k]].cell.width == whole[k].cell.width)
                 forced[k] = 0;  // a cell that is not cut
@@ -189,7 +221,7 @@ private:
         return next;
     }
 
-    const LightCells& cells_;
+    const Cells& cells_;
     const Frame& frame_;
     const IntegrationOptions& options_;
     const double horizon_;
@@ -201,8 +233,6 @@ private:
 /// The largest angle from side to side of a light that is sampled by nodes.
 double extentOf(const Light& light) {
     if (const auto* disc = std::get_if<DiscLight>(&light)) return 2 * disc->radius;
-    if (const auto* panel = std::get_if<PanelLight>(&light))
-        return std::max(panel->width, panel->height);
     if (std::holds_alternative<CoefficientLight>(light)) return pi;
     return 0;
 }
@@ -222,10 +252,17 @@ double finestOf(const Light& light) {
     return finest;
 }
 
-/// The level at which nodes are as close as the narrowest lobe is wide.
-int firstLevel(double extent, std::span<const Peak> peaks) {
+/// The level at which nodes are as close as the narrowest lobe is wide, or seven tenths of the
+/// distance from a disc to its peak.
+int firstLevel(const Light& light, const Frame& frame, std::span<const Peak> peaks) {
+    const double extent = extentOf(light);
     double narrowest = 1;
-    for (const Peak& peak : peaks) narrowest = std::min(narrowest, peak.width);
+    for (const Peak& peak : peaks) {
+        double away = 0;
+        if (const auto* disc = std::get_if<DiscLight>(&light))
+            away = angleBetween(frame.toLocal(disc->towards), peak.towards) - disc->radius;
+        narrowest = std::min(narrowest, std::max(peak.width, 0.7 * away));
+    }
     const double more = extent / (narrowest * (3 + 2 * extent));
     return more <= 1 ? 0
                      : std::min(mostLevel - 1,
@@ -236,18 +273,21 @@ int firstLevel(double extent, std::span<const Peak> peaks) {
 
 struct DirectIntegral::Parts {
     Parts(std::span<const Light> lights, double tolerance)
-        : cells(withSkyPictures(lights), finestPerTolerance * tolerance) {
+        : Parts(withOneSky(lights), finestPerTolerance * tolerance, lights) {}
+    /// `lights` with pictures for skies.
+    Parts(const std::vector<Light>& lights, double share, std::span<const Light> given)
+        : cells(lights, share), panels(lights) {
+        for (const Light& light : given) finest = std::min(finest, finestOf(light));
         for (const Light& light : lights) {
-            finest = std::min(finest, finestOf(light));
             if (!std::holds_alternative<PictureLight>(light) &&
-                !std::holds_alternative<SkyLight>(light)) {
+                !std::holds_alternative<PanelLight>(light))
                 compact.push_back(light);
-            }
         }
     }
     LightCells cells;
+    PanelCells panels;
     double finest = 1;
-    std::vector<Light> compact;  ///< discs, panels, directional lights, series
+    std::vector<Light> compact;  ///< discs, directional lights, series
 };
 
 DirectIntegral::DirectIntegral(std::span<const Light> lights, double tolerance)
@@ -261,7 +301,8 @@ double DirectIntegral::finest() const {
 PointRadiance DirectIntegral::at(const Brdf& brdf, const Frame& frame, const Direction& wo,
                                  const IntegrationOptions& options) const {
     PointRadiance result;
-    CellIntegral(parts_->cells, brdf, frame, wo, options, result).run();
+    CellIntegral<LightCells, LightCell>(parts_->cells, brdf, frame, wo, options, result).run();
+    CellIntegral<PanelCells, PanelCell>(parts_->panels, brdf, frame, wo, options, result).run();
     Evaluator evaluator(brdf, wo, result);
     const std::vector<Peak> peaks =
         parts_->compact.empty() ? std::vector<Peak>{} : peaksOf(brdf, wo);
@@ -270,17 +311,13 @@ PointRadiance DirectIntegral::at(const Brdf& brdf, const Frame& frame, const Dir
             const LightSamples samples = sampleLights({&light, 1}, frame, level);
             evaluator.clear();
             for (std::size_t k = 0; k < samples.count(); ++k) {
-                evaluator.add({samples.x[k], samples.y[k], samples.z[k]});
+                evaluator.add({samples.x[k], samples.y[k], samples.z[k]},
+                              {samples.flux[0][k], samples.flux[1][k], samples.flux[2][k]});
             }
             evaluator.evaluate();
-            Rgb sum{};
-            for (std::size_t k = 0; k < samples.count(); ++k) {
-                add(sum, evaluator.value(
-                             k, {samples.flux[0][k], samples.flux[1][k], samples.flux[2][k]}));
-            }
-            return sum;
+            return evaluator.sum(0, evaluator.count());
         };
-        int level = firstLevel(extentOf(light), peaks);
+        int level = firstLevel(light, frame, peaks);
         Rgb sum = sumAt(level);
         if (std::holds_alternative<DirectionalLight>(light)) {
             add(result.radiance, sum);

@@ -30,10 +30,10 @@ struct PointRadiance {
 
 /// L(wo) = integral of L_i(wi) f(wi, wo) cos(theta_i) over the hemisphere above a surface, without
 /// shadows, for f grey or RGB. Pictures, and skies as pictures of 1024 columns, are cut into cells,
-/// each one direction with the cell's flux: wherever four parts of a cell differ from the whole,
-/// they are cut further, and about the lobes of f always, so that narrow ones are not missed.
-/// Discs, panels and directional lights are sampled by sampleLights at growing levels. Immutable;
-/// safe to use from many threads.
+/// each one direction with the cell's flux, and panels into cells of 3 x 3 Gauss nodes: wherever
+/// four parts of a cell differ from the whole, they are cut further, and about the lobes of f
+/// always, so that narrow ones are not missed. Discs and directional lights are sampled by
+/// sampleLights at growing levels. Immutable; safe to use from many threads.
 class DirectIntegral {
 public:
     /// `tolerance`: the least that `at` is asked for, which decides how coarse its first cells are.

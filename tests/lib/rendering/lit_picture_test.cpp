@@ -1,7 +1,9 @@
 // Lit surfaces against closed forms, and the two ways of lighting against each other.
 
 #include <hshfit/bases/catalog.h>
+#include <hshfit/brdf/vectors.h>
 #include <hshfit/light/catalog.h>
+#include <hshfit/light/panel_plane.h>
 #include <hshfit/light/picture_light.h>
 #include <hshfit/pictures/sphere_picture.h>
 #include <hshfit/projection/projection.h>
@@ -137,6 +139,49 @@ TEST(LitPicture, LambertUnderADirectionalLightIsTheClosedForm) {
     EXPECT_LT(largestError(integrated(lambert(0.5), lights).picture, exact), 1e-6);
     const Coefficients c = projected(lambert(0.5), "hsh", 3, "8");
     EXPECT_LT(largestError(byCoefficients(c, lights).picture, exact), 1e-6);
+}
+
+/// Lambert 1760: the irradiance of a polygon is the sum of its edges' angles times the cosines of
+/// their planes' normals, over 2; here of panels above the horizon, seen from their corners.
+TEST(DirectIntegral, LambertUnderAPanelIsThePolygonFormula) {
+    const auto white = lambert(1);
+    for (const char* text : {"panel:elevation=60,azimuth=30,width=40,height=20",
+                             "panel:elevation=50,width=60,height=4,roll=30"}) {
+        const std::vector<Light> lights = parseLights(text).lights;
+        const PanelPlane plane(std::get<PanelLight>(lights[0]));
+        double irradiance = 0;
+        const double corners[5][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {-1, -1}};
+        for (int k = 0; k < 4; ++k) {
+            const Direction a = plane.at(corners[k][0], corners[k][1]).direction,
+                            b = plane.at(corners[k + 1][0], corners[k + 1][1]).direction;
+            irradiance += angleBetween(a, b) * normalised(cross(a, b)).z / 2;
+        }
+        const PointRadiance found =
+            DirectIntegral(lights).at(white, Frame(Orientation{}), {0, 0, 1}, {.tolerance = 1e-6});
+        EXPECT_NEAR(found.radiance[0], std::abs(irradiance) / pi, 1e-6 * found.radiance[0]) << text;
+        EXPECT_LT(found.evaluations, 20'000) << text;
+    }
+}
+
+/// A lobe of half a degree inside, on the edge and outside of a panel, which a lattice of a million
+/// points sees too: the work goes where the lobe is.
+TEST(DirectIntegral, PanelsAreCutWhereALobeSeesThem) {
+    const auto gloss = brdfs::open("phong:exponent=30000");
+    const std::vector<Light> lights =
+        parseLights("panel:elevation=45,azimuth=0,width=60,height=40").lights;
+    for (const double theta : {45.0, 62.0, 64.9, 65.3, 75.0}) {
+        const Direction wo = directionFromAngles(radians(theta), pi);
+        const Frame frame{Orientation{}};
+        const PointRadiance found = DirectIntegral(lights).at(*gloss, frame, wo);
+        const LightSamples lattice = latticeSamples(lights, frame, 1'000'000);
+        std::vector<double> f(lattice.count());
+        gloss->eval(wo, lattice.directions(), f.data());
+        double expected = 0;
+        for (std::size_t k = 0; k < f.size(); ++k)
+            expected += lattice.flux[0][k] * f[k] * std::max(lattice.z[k], 0.0);
+        EXPECT_NEAR(found.radiance[0], expected, 5e-3 * expected + 1e-6) << theta;
+        EXPECT_LT(found.evaluations, 8'000) << theta;
+    }
 }
 
 TEST(LitPicture, LambertUnderAHalfDomeIsTheClosedForm) {

@@ -1,6 +1,6 @@
 #include <hshfit/rendering/internal/light_cells.h>
 
-#include <hshfit/light/sky.h>
+#include <hshfit/light/light_samples.h>
 
 #include <tbb/parallel_for.h>
 
@@ -26,27 +26,30 @@ double grey(const Rgb& flux) {
 
 }  // namespace
 
-std::vector<Light> withSkyPictures(std::span<const Light> lights) {
-    std::vector<Light> result;
-    for (const Light& light : lights) {
-        const auto* sky = std::get_if<SkyLight>(&light);
-        if (!sky) {
-            result.push_back(light);
-            continue;
+Light skyPicture(std::span<const Light> lights) {
+    PictureLight picture{.file = "sky", .width = skyColumns, .height = skyColumns / 2, .rgb = {}};
+    picture.rgb.resize(3 * picture.width * picture.height);
+    tbb::parallel_for(std::size_t{0}, picture.height, [&](std::size_t row) {
+        float* rgb = picture.rgb.data() + 3 * row * picture.width;
+        for (std::size_t column = 0; column < picture.width; ++column) {
+            const Direction d = directionOf(picture, static_cast<double>(column) + 0.5,
+                                            static_cast<double>(row) + 0.5);
+            for (const double value : radianceFrom(lights, d)) *rgb++ = static_cast<float>(value);
         }
-        PictureLight picture{
-            .file = "sky", .width = skyColumns, .height = skyColumns / 2, .rgb = {}};
-        picture.rgb.resize(3 * picture.width * picture.height);
-        tbb::parallel_for(std::size_t{0}, picture.height, [&](std::size_t row) {
-            float* rgb = picture.rgb.data() + 3 * row * picture.width;
-            for (std::size_t column = 0; column < picture.width; ++column) {
-                const Direction d = directionOf(picture, static_cast<double>(column) + 0.5,
-                                                static_cast<double>(row) + 0.5);
-                for (const double value : radianceOf(*sky, d)) *rgb++ = static_cast<float>(value);
-            }
-        });
-        result.emplace_back(std::move(picture));
+    });
+    return picture;
+}
+
+std::vector<Light> withOneSky(std::span<const Light> lights) {
+    std::vector<Light> skies, uniform, result;
+    for (const Light& light : lights) {
+        const auto* disc = std::get_if<DiscLight>(&light);
+        const bool all = disc && disc->radius >= pi;
+        (std::holds_alternative<SkyLight>(light) ? skies : all ? uniform : result).push_back(light);
     }
+    std::vector<Light>& to = skies.empty() ? result : skies;
+    to.insert(to.end(), uniform.begin(), uniform.end());
+    if (!skies.empty()) result.push_back(skyPicture(skies));
     return result;
 }
 

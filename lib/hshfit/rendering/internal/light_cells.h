@@ -21,10 +21,13 @@ struct LightCell {
     double u = 0, v = 0, size = 1;
 };
 
-/// Skies as latitude-longitude pictures, in place of SkyLight; other lights as they are. A pixel
-/// has the radiance in its middle: with 1024 columns the mean over a pixel differs by less than
-/// 1e-4 in the gradient about the sun of the CIE's clearest sky, exp(-3 chi).
-std::vector<Light> withSkyPictures(std::span<const Light> lights);
+/// The sum of skies and uniform lights as a latitude-longitude picture. A pixel has the radiance in
+/// its middle: with 1024 columns the mean over a pixel differs by less than 1e-4 in the gradient
+/// about the sun of the CIE's clearest sky, exp(-3 chi).
+Light skyPicture(std::span<const Light> lights);
+
+/// All skies, and uniform lights beside a sky, as one picture; other lights as they are.
+std::vector<Light> withOneSky(std::span<const Light> lights);
 
 /// Pictures as trees of cells: each cell is cut into four, down to a 16th of a pixel's width,
 /// within which radiance is constant. The flux of a picture's cells is the same at each level.
