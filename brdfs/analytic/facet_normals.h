@@ -74,7 +74,7 @@ private:
 std::function<double(const Direction& h)> ggxNormals(double ax, double ay);
 /// D of Beckmann (Walter et al. 2007, Eq. 25), a Gaussian of slopes.
 std::function<double(const Direction& h)> beckmannNormals(double ax, double ay);
-/// Those of a model of microfacet.h with this D, a Gaussian of slopes or not.
+/// The normals of a model of microfacet.h with this D, a Gaussian of slopes or not.
 FacetNormals microfacetNormals(const Model& model, const Parameters& p,
                                std::function<double(const Direction& h)> density,
                                const RoughnessOf<double>& roughness, bool gaussian);

@@ -59,7 +59,7 @@ public:
         if (shape_.coatWeight > 0) lobes.push_back(lobeOf(shape_.coat.r));
         return lobes;
     }
-    /// Those of the rough diffuse part, as in eon.cpp.
+    /// The kinks of the rough diffuse part, as in eon.cpp.
     std::vector<double> kinks(const Direction& wo) const override {
         if (shape_.diffuse.roughness == 0) return {};
         return {wo.z};

@@ -29,7 +29,7 @@ public:
     void coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const override;
     std::vector<Lobe> lobes(const Direction& wo) const override;
     std::vector<double> kinks(const Direction& wo) const override;
-    /// Those of the first line: the models of a fit have the same at every wavelength.
+    /// The first line's kinks: the models of a fit have the same at every wavelength.
     std::vector<KinkCurve> kinkCurves(const Direction& wo) const override;
     std::vector<double> outgoingKinks(const Direction& wi) const override;
     std::vector<KinkCurve> outgoingKinkCurves(const Direction& wi) const override;

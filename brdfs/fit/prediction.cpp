@@ -247,7 +247,7 @@ double simultaneousFactor(const FitResult& fit, std::span<const DirectionPair> p
         for (double& z : most) z *= std::sqrt(degrees / chiSquareQuantile(uniform(), degrees));
     std::vector<double> sorted(most.begin(), most.end());
     std::ranges::sort(sorted);
-    // That of one pair but for the chance of the draws, where one combination decides all.
+    // The quantile of one pair but for the chance of the draws, where one combination decides all.
     return std::max(percentile(sorted, probability), Prediction::pointwise(probability, degrees));
 }
 

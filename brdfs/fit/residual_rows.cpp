@@ -1,6 +1,7 @@
 #include <brdfs/fit/residual_rows.h>
 
 #include <brdfs/fit/prediction.h>
+#include <hshfit/brdf/vectors.h>
 
 #include <fmt/format.h>
 
@@ -80,7 +81,7 @@ std::vector<double> standardisedResiduals(const FitSamples& samples,
 
 double aspecularAngle(const FitSamples& samples, std::size_t k) {
     const Direction mirror = mirrored({samples.wiX[k], samples.wiY[k], samples.wiZ[k]});
-    return degrees(std::acos(std::clamp(dot(samples.wo[k], mirror), -1.0, 1.0)));
+    return degrees(angleBetween(samples.wo[k], mirror));
 }
 
 void writeResidualRows(const FitSamples& samples, const FitResult& result, Loss::Kind loss,

@@ -1,4 +1,5 @@
 #include <brdfs/fit/sample_cuts.h>
+#include <hshfit/brdf/vectors.h>
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
@@ -82,7 +83,7 @@ SampleCuts cutsOf(const FitSamples& samples, SampleCuts::Of of) {
         Seen one = of == SampleCuts::Of::outgoing ? seenFrom(wo, wi, samples.isotropic, k)
                                                   : seenFrom(wi, wo, samples.isotropic, k);
         if (of == SampleCuts::Of::retro) {
-            if (degrees(std::acos(std::clamp(dot(wi, wo), -1.0, 1.0))) > inPlane) continue;
+            if (degrees(angleBetween(wi, wo)) > inPlane) continue;
             one = {k, 0, 0, degrees(polarAngle(wi)), 0};
         }
         if (one.outside <= inPlane) seen.push_back(one);

@@ -1,7 +1,7 @@
 #include <brdfs/fit/whitening.h>
 
 #include <brdfs/fit/dense.h>
-#include <hshfit/brdf/directions.h>
+#include <hshfit/brdf/vectors.h>
 #include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
 #include <hshfit/linear_algebra/decompositions.h>
@@ -94,7 +94,7 @@ Matrix correlationOfChannels(const FitSamples& samples) {
 double correlationOfSamples(const FitSamples& samples, std::size_t j, std::size_t k) {
     const SigmaCorrelation& own = samples.correlation;
     if (own.angle > 0) {
-        const double apart = std::acos(std::clamp(dot(samples.wo[j], samples.wo[k]), -1.0, 1.0));
+        const double apart = angleBetween(samples.wo[j], samples.wo[k]);
         return std::exp(-apart / own.angle);
     }
     const CorrelationBlock& block =

@@ -18,7 +18,7 @@ struct WriteOptions {
 
 /// One row of the table of formats that can be written.
 struct Writer {
-    std::string_view name;  ///< that of the format which reads it back, if there is one
+    std::string_view name;  ///< the reading format's, if there is one
     std::string_view help;
     std::string_view extension;         ///< with the dot; `convert` chooses by it
     std::vector<Parameter> parameters;  ///< options: --to NAME:key=value

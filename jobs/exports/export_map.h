@@ -12,7 +12,7 @@ namespace hshfit::jobs {
 struct MapExportOptions {
     /// gpu::selectTargets: ktx2, exr-parts, the languages and the viewer.
     std::string targets = "ktx2,glsl-es";
-    std::string name = {};       ///< of the files; empty: that of the map's file
+    std::string name = {};       ///< of the files; empty: the map file's name
     std::string prefix = "hsh";  ///< of every name in a shader
     int environmentOrder = 5;    ///< of the light that shaders' shade() takes; 0: no shade()
     std::string wrap = "clamp";  ///< parseWrap

@@ -20,8 +20,8 @@ namespace hshfit::jobs {
 struct MaterialExportOptions {
     std::string targets = "gltf";  ///< gpu::selectTargets, materials alone
     std::string name = {};         ///< of the files; empty: from the input
-    /// The BRDF that the loss is measured against; empty: that of the coefficient file or of the
-    /// fit, or the input itself.
+    /// The BRDF that the loss is measured against; empty: the source of the
+    /// coefficient file or of the fit, or the input itself.
     std::string source = {};
     std::string mesh = {};       ///< path, +y up; empty: a sphere
     std::string parts = "auto";  ///< FitOptions::parts

@@ -15,7 +15,7 @@ namespace hshfit::jobs {
 struct CertificateField {
     std::string_view key, label, section;
 };
-/// Those of docs/schemas/certificate_fields.schema.json, in the order of the certificate.
+/// The fields of docs/schemas/certificate_fields.schema.json, in the order of the certificate.
 std::span<const CertificateField> certificateFields();
 
 /// The fields of a file, {"format": "hshfit-certificate-fields", "version": 1, KEY: TEXT or

@@ -27,7 +27,7 @@ struct FittedLtc {
 FittedLtc fitLtc(const std::string& model, const std::vector<std::string>& outputs,
                  const brdfs::LtcTableOptions& options, const Listener& listener = {});
 
-/// Those of the table.
+/// The options of the table.
 OptionRows<brdfs::LtcTableOptions> ltcOptions();
 /// The answer of the command.
 nlohmann::ordered_json ltcJson(const FittedLtc& fitted);

@@ -63,7 +63,7 @@ Entry entryOf(const ml::LogSpace& space, const std::string& spec, const ml::Limi
     return entry;
 }
 
-/// Those of a material for which the time is over are empty.
+/// The entry of a material for which the time is over is empty.
 std::vector<Entry> entriesOf(const ml::LogSpace& space, const std::vector<std::string>& specs,
                              const ml::Limits& limits, const TimeLimit& time,
                              const Listener& listener) {

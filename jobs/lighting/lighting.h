@@ -19,7 +19,7 @@ struct LightingExportOptions {
     /// The light that is written with the tables (light/catalog.h).
     std::string light = "sky:type=12,elevation=40";
     std::string targets = "glsl-es";  ///< languages of gpu::selectTargets; others are left out
-    std::string name = {};            ///< of the files; empty: that of the coefficient file
+    std::string name = {};            ///< of the files; empty: the coefficient file's
     /// The BRDF that errors are measured against; empty: the one that the coefficients name.
     std::string source = {};
     std::string prefix = "hsh";  ///< of every name in a shader

@@ -18,7 +18,7 @@ struct MapOptions {
     std::string form = {};  ///< one of mapForms; empty: by the description
     std::string precision = "half";
     std::string halfway = "8,4,3";     ///< parseHalfway
-    std::optional<double> error = {};  ///< none: that of the form
+    std::optional<double> error = {};  ///< none: the form's default
     int harmonics = 0;                 ///< FilteredMapOptions::harmonics
     std::size_t memory = 1024;         ///< MiB for bands, of each process
     SvbrdfOptions texels = {};         ///< the others of all forms

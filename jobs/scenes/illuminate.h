@@ -50,7 +50,7 @@ struct IlluminateOptions {
     bool caches() const { return method == IlluminateMethod::radianceCache; }
 };
 OptionRows<IlluminateOptions> illuminateOptions();
-/// Those of a radiance cache alone. OptionRow::inputs of both are bits of illuminateBit.
+/// The options of a radiance cache alone. OptionRow::inputs of both are bits of illuminateBit.
 OptionRows<IlluminateOptions> cacheOptions();
 
 constexpr unsigned illuminateBit(IlluminateMethod method) {

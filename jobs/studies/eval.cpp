@@ -110,7 +110,7 @@ class UnitVectors {
 public:
     static constexpr std::size_t most = 128;
 
-    /// Those of the pairs first to first + count - 1. Throws InputError at the first that is none.
+    /// Takes the pairs first to first + count - 1. Throws InputError at the first that is none.
     void take(const VectorArray& vectors, const char* name, std::size_t first, std::size_t count) {
         count_ = count;
         for (std::size_t k = 0; k < count; ++k) {

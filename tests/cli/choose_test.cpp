@@ -88,6 +88,18 @@ TEST_F(ChooseCommand, StatesTheErrorsAndBytesOfWhatItsCommandsWrite) {
                                             "coefficients"}));
 }
 
+/// A metal's colour is that of F0, which goes to white at the horizon.
+TEST_F(ChooseCommand, FitsOfLobesHoldAColouredMetal) {
+    const Json answer = choose("ggx:alpha=.3,F0=.9/.6/.3 --kinds lobes");
+    EXPECT_EQ(answer["rows"].size(), 4);
+    for (const Json& row : answer["rows"])
+        if (row["name"] == "Lambert + GGX, F0 in colour") {
+            EXPECT_LT(row["picture"]["flip"]["mean"], 1e-6);
+            return;
+        }
+    ADD_FAILURE() << answer.dump();
+}
+
 /// kd has three numbers, alpha and F0 one each; a model is its own best stand-in.
 TEST_F(ChooseCommand, TakesAModelForItself) {
     const Json answer = choose(plastic + std::string(quick));

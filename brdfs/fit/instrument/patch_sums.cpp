@@ -1,5 +1,6 @@
 #include <brdfs/fit/instrument/patch_sums.h>
 
+#include <hshfit/brdf/vectors.h>
 #include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
 
@@ -36,10 +37,6 @@ Direction incidentOf(const FitSamples& samples, std::size_t k) {
 
 double reachOf(const Aperture& aperture) {
     return aperture.finite() ? std::hypot(aperture.half, aperture.across) : 0;
-}
-
-double angleBetween(const Direction& a, const Direction& b) {
-    return std::acos(std::clamp(dot(a, b), -1.0, 1.0));
 }
 
 /// The least levels with nodes as close as the narrowest lobe within reach is wide. The half vector

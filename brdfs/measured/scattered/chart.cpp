@@ -31,11 +31,6 @@ Direction unit(const Direction& d) {
     return size > 1e-12 ? Direction{d.x / size, d.y / size, d.z / size} : Direction{};
 }
 
-double angleBetween(const Direction& a, const Direction& b) {
-    const Direction difference{a.x - b.x, a.y - b.y, a.z - b.z};
-    return 2 * std::atan2(length(difference), length(a + b));
-}
-
 Point pairPoint(bool isotropic, const Direction& wi, const Direction& wo) {
     const Plane i = disc(wi), o = disc(wo);
     const Plane s{i.x + o.x, i.y + o.y}, d{i.x - o.x, i.y - o.y};

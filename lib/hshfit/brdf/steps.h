@@ -31,8 +31,8 @@ protected:
     ~HasSteps() = default;
 };
 
-/// Those of a BRDF that does not say: the ones over wi with the roles exchanged, which are right
-/// for a reciprocal BRDF.
+/// The kinks of a BRDF that does not say: the ones over wi with the roles exchanged, which are
+/// right for a reciprocal BRDF.
 std::vector<double> outgoingKinksOf(const Brdf& brdf, const Direction& wi);
 std::vector<KinkCurve> outgoingKinkCurvesOf(const Brdf& brdf, const Direction& wi);
 /// 0 for a BRDF that does not say.

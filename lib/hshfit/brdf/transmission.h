@@ -42,8 +42,8 @@ protected:
     ~HasOutgoingLobes() = default;
 };
 
-/// Those of a BRDF that does not say: the ones over wi, which are right where f is about the mirror
-/// direction.
+/// The lobes of a BRDF that does not say: the ones over wi, which are right where f is about the
+/// mirror direction.
 std::vector<Lobe> outgoingLobesOf(const Brdf& brdf, const Direction& wi);
 
 /// Throws UsageError, in one line, for a transmission: `taker`, such as "merl", needs a reflection.

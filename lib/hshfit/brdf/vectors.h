@@ -31,4 +31,12 @@ inline Direction normalised(const Direction& d) {
     return {d.x / length, d.y / length, d.z / length};
 }
 
+/// The angle between two unit vectors, in [0, pi] radians: 2 atan2(|a - b|, |a + b|) (Kahan 2006,
+/// "How Futile are Mindless Assessments of Roundoff in Floating-Point Computation?", section 12).
+/// It is accurate at both ends, where the arc cosine of dot(a, b) loses half of the digits.
+inline double angleBetween(const Direction& a, const Direction& b) {
+    const Direction difference = a - b, sum = a + b;
+    return 2 * std::atan2(std::sqrt(dot(difference, difference)), std::sqrt(dot(sum, sum)));
+}
+
 }  // namespace hshfit::inline brdf

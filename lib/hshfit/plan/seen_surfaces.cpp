@@ -24,11 +24,6 @@ struct Seen {
     Direction wo;  ///< in it
 };
 
-double angleBetween(const Direction& a, const Direction& b) {
-    const Direction c = cross(a, b);
-    return std::atan2(std::sqrt(dot(c, c)), dot(a, b));
-}
-
 /// The group of each normal: centres from farthest points until all are within `narrow`, then the
 /// means of the groups.
 struct Groups {

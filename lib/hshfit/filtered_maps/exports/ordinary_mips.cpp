@@ -1,5 +1,6 @@
 #include <hshfit/filtered_maps/exports/ordinary_mips.h>
 
+#include <hshfit/brdf/vectors.h>
 #include <hshfit/gpu/containers/ktx2_image.h>
 #include <hshfit/normal_filtering/mip_layout.h>
 
@@ -39,7 +40,7 @@ Direction normalOf(const BlockTexel& texel) {
 }
 
 double normalError(const BlockTexel& found, const BlockTexel& wanted) {
-    return std::acos(std::clamp(dot(normalOf(found), normalOf(wanted)), -1.0, 1.0));
+    return angleBetween(normalOf(found), normalOf(wanted));
 }
 
 double roughnessError(const BlockTexel& found, const BlockTexel& wanted) {

@@ -1,5 +1,7 @@
 #include <hshfit/lighting/internal/lobe_search.h>
 
+#include <hshfit/brdf/vectors.h>
+
 #include <Eigen/Cholesky>
 
 #include <algorithm>
@@ -21,10 +23,6 @@ constexpr double windowAngle = 12;       // degrees, the same
 constexpr double mostLean = 3;           // of an axis from the normal, over that of wo
 constexpr double gain = 1e-4;            // of what is left, below which a round is the last
 constexpr int mostRounds = 20;
-
-double angleBetween(const Direction& a, const Direction& b) {
-    return std::acos(std::clamp(dot(a, b), -1.0, 1.0));
-}
 
 /// A direction turned in the plane of incidence, away from the viewer.
 Direction turnedAway(const Direction& d, double angle) {

@@ -13,7 +13,7 @@ struct Footprint {
     std::size_t count() const { return width * height; }
 };
 
-/// That of texel `index` of a level of `across` x `down` texels.
+/// The footprint of texel `index` of a level of `across` x `down` texels.
 inline Footprint footprintOf(std::size_t width, std::size_t height, std::size_t across,
                              std::size_t down, std::size_t index) {
     const std::size_t x = index % across, y = index / across;

@@ -61,7 +61,7 @@ public:
     const HalfwayOrders& orders() const { return orders_; }
     const HalfwayCounts& counts() const { return counts_; }
     const std::vector<HalfwayTerm>& list() const { return terms_; }
-    /// Those of the smooth exponent first.
+    /// The smooth exponent's runs first.
     const std::vector<HalfwayRun>& runs() const { return runs_; }
     /// Where the terms of the runs, one after another, are in the list.
     const std::vector<std::size_t>& position() const { return position_; }

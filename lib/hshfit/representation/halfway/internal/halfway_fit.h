@@ -55,7 +55,7 @@ public:
         std::vector<double> space = {}, weightSpace = {};
         const double *terms = nullptr, *weights = nullptr;
     };
-    /// Those of `count` pairs from `first` on, for as long as `columns` and this exist.
+    /// The columns of `count` pairs from `first` on, for as long as `columns` and this exist.
     void find(std::size_t first, std::size_t count, Columns& columns) const;
     std::size_t rows() const { return rows_; }
 

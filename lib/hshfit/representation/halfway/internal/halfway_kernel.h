@@ -60,7 +60,7 @@ struct HalfwayLayout {
     static constexpr std::size_t mostOneRows = 1024;  ///< beyond these it is no faster
 };
 
-/// That of an expansion.
+/// The layout of an expansion.
 template <class T>
 HalfwayLayout<T> halfwayLayoutOf(const HalfwayExpansion& expansion);
 
