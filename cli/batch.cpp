@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t shownFailures = 20, shownMistakes = 1000;
+constexpr std::size_t shownFailures = 20, shownMistakes = 50;
 
 struct BatchArguments {
     std::string manifest, folder;

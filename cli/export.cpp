@@ -10,6 +10,7 @@
 #include <hshfit/library_maps/library_sidecar.h>
 #include <hshfit/light/catalog.h>
 #include <hshfit/pages/picture_error_json.h>
+#include <hshfit/percent.h>
 #include <hshfit/wings.h>
 
 #include <jobs/common/many.h>
@@ -163,9 +164,9 @@ std::string proposalText(const Json& proposal) {
     return fmt::format(
         "sampling: proposal of {} bytes in {:.2g} s; at most, from 0 to 85 degrees, variance "
         "{:.2g}, "
-        "weight {:.3g} times its mean, {:.2g} % wasted\n",
+        "weight {:.3g} times its mean, {} wasted\n",
         proposal["bytes"].get<std::size_t>(), proposal["seconds"].get<double>(), variance, largest,
-        100 * wasted);
+        hshfit::percent(wasted, 2));
 }
 
 Json document(const jobs::Exported& exported, const std::string& folder) {

@@ -93,6 +93,11 @@ std::string scalarText(const Json& value) {
     return value.is_string() ? value.get<std::string>() : jsonText(value);
 }
 
+/// Six digits; all of them are in the answer in JSON.
+std::string shortText(const Json& value) {
+    return value.is_null() ? "not finite" : fmt::format("{:.6g}", value.get<double>());
+}
+
 std::string infoText(const Json& document) {
     std::string out = fmt::format("{}: {}\n", document["kind"].get<std::string>(),
                                   document["name"].get<std::string>());
@@ -108,8 +113,8 @@ std::string infoText(const Json& document) {
         for (const auto& [key, value] : document[section].items())
             out += factLine(key, scalarText(value));
     }
-    out += factLine("smallest f found", jsonText(document["range"]["min"]));
-    out += factLine("largest f found", jsonText(document["range"]["max"]));
+    out += factLine("smallest f found", shortText(document["range"]["min"]));
+    out += factLine("largest f found", shortText(document["range"]["max"]));
     out += healthText(document);
     for (const Json& warning : document.value("warnings", Json::array()))
         out += factLine("WARNING", warning.get<std::string>());

@@ -42,10 +42,7 @@ struct LightJson {
     }
     Json operator()(const PictureLight& light) const {
         const PictureGeometry file = fileGeometryOf(light);
-        PictureOptions options{
-            .layout = light.fileLayout, .part = light.part, .layer = light.layer};
-        if (light.curve != TransferCurve::linear) options.curve = light.curve;
-        const PictureFacts facts = PictureReader(light.file, options).facts();
+        const PictureFacts facts = PictureReader(light.file, optionsOf(light)).facts();
         Json json = {{"file", light.file},
                      {"layout", layoutName(light.fileLayout)},
                      {"width", file.width},
@@ -114,6 +111,18 @@ std::string partsText(const Json& parts, std::size_t chosen) {
     return text;
 }
 
+/// What becomes of a file's primaries; eight zeros state none.
+std::string primariesText(const Json& xy) {
+    constexpr double rec709[] = {.64, .33, .30, .60, .15, .06, .3127, .3290};
+    bool none = true, same = true;
+    for (std::size_t k = 0; k < std::size(rec709); ++k) {
+        const double value = xy[k];
+        none = none && value == 0;
+        same = same && std::abs(value - rec709[k]) < 1e-3;
+    }
+    return none ? ", which state none" : same ? ", Rec. 709" : ", converted to Rec. 709";
+}
+
 std::string lightLine(const Json& light) {
     std::string text;
     for (const auto& [key, value] : light.items()) {
@@ -124,7 +133,7 @@ std::string lightLine(const Json& light) {
             text += fmt::format("; {} ", key);
             for (const Json& number : value) text += fmt::format("{:g} ", number.get<double>());
             text.pop_back();
-            text += key == "primaries" ? ", converted to Rec. 709" : ", divided out";
+            text += key == "primaries" ? primariesText(value) : ", divided out";
         } else if (key == "exposure") {
             text += fmt::format("; exposure {:g}, divided out", value.get<double>());
         } else if (value.is_object()) {

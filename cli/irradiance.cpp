@@ -88,6 +88,13 @@ std::string errorText(const char* name, std::size_t numbers, const IrradianceErr
         error.negative < 0 ? fmt::format(", down to {:.2f} %", 100 * error.negative) : "");
 }
 
+/// 0 for what sums of double precision leave of nothing.
+Rgb withoutRounding(Rgb values, double scale) {
+    for (double& value : values)
+        if (std::abs(value) < 1e-13 * scale) value = 0;
+    return values;
+}
+
 std::string text(const jobs::LitSurface& lit, const IrradianceArguments& arguments) {
     std::string out = fmt::format(
         "mean irradiance {:.6g}; errors against direct integration at {} normals, relative to it\n",
@@ -101,7 +108,8 @@ std::string text(const jobs::LitSurface& lit, const IrradianceArguments& argumen
     for (int l = 0; l < 3; ++l) {
         for (int m = -l; m <= l; ++m) {
             const auto k = static_cast<std::size_t>(l * (l + 1) + m);
-            const Rgb &a = lit.radiance[k], &b = lit.irradiance[k];
+            const Rgb a = withoutRounding(lit.radiance[k], lit.meanIrradiance),
+                      b = withoutRounding(lit.irradiance[k], lit.meanIrradiance);
             out += fmt::format("{:2} {:2} {:13.6g}{:13.6g}{:13.6g} {:13.6g}{:13.6g}{:13.6g}\n", l,
                                m, a[0], a[1], a[2], b[0], b[1], b[2]);
         }

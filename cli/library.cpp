@@ -38,10 +38,10 @@ Json headOf(const LibraryArguments& arguments) {
 }
 
 std::string materialText(const ml::Material& m) {
-    std::string text =
-        fmt::format("{:<32} {:<10} {:>6}  {:<9.3g} {:<9.3g} {:<9.3g} {:<9.3g} {:.3g}\n", m.name,
-                    ml::nameOf(m.kind), m.bytes, m.error.meanLog, m.error.logError,
-                    m.error.relativeL2, m.error.maximum, m.error.flip);
+    std::string text = fmt::format("{:<32} {:<10} {:>6}  {:<9.3g} {:<9.3g} {:<9.3g} {:<9.3g} {}\n",
+                                   m.name, ml::nameOf(m.kind), m.bytes, m.error.meanLog,
+                                   m.error.logError, m.error.relativeL2, m.error.maximum,
+                                   m.error.flip > 0 ? fmt::format("{:.3g}", m.error.flip) : "-");
     if (!m.fallback.empty()) text += fmt::format("  a form of its own: it {}\n", m.fallback);
     return text;
 }
@@ -209,10 +209,11 @@ void runSearch(const LibraryArguments& arguments, const Globals& globals) {
     std::string text = "material                         FLIP    CIEDE2000  ln(f + 0.001)\n";
     for (const jobs::FoundMaterial& one : found) {
         rows.push_back({{"name", one.name},
-                        {"distance", one.distance},
+                        {"distance", one.distance ? Json(*one.distance) : Json(nullptr)},
                         {"picture", pictureErrorJson(one.picture)}});
-        text += fmt::format("{:<32} {:<7.4f} {:<10.3g} {:.3g}\n", one.name, one.picture.flip.mean,
-                            one.picture.colour.mean, one.distance);
+        text += fmt::format("{:<32} {:<7.4f} {:<10.3g} {}\n", one.name, one.picture.flip.mean,
+                            one.picture.colour.mean,
+                            one.distance ? fmt::format("{:.3g}", *one.distance) : "-");
     }
     if (!globals.json) return printText(text);
     Json document = headOf(arguments);

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -83,6 +84,25 @@ Words wordsOf(const CLI::App& command) {
     return words;
 }
 
+/// Throws UsageError where two of the files that the command writes are one.
+void refuseTwice(const CLI::App& command) {
+    std::map<std::filesystem::path, std::string> names;
+    for (const CLI::Option* option : command.get_options()) {
+        const Values* row = findValues(command, *option);
+        if (!row || row->files != Files::written || !isOutput(command, *option)) continue;
+        for (const std::string& path : option->results()) {
+            if (isStandardOutput(path)) continue;
+            const auto place = std::filesystem::absolute(path).lexically_normal();
+            const auto [first, added] = names.emplace(place, nameOf(*option));
+            if (!added)
+                throw UsageError(
+                    fmt::format("{}: {} and {} both write '{}': give each a file of "
+                                "its own",
+                                command.get_name(), first->second, nameOf(*option), path));
+        }
+    }
+}
+
 bool writesFiles(const CLI::App& command) {
     return std::ranges::any_of(command.get_options(), [&](const CLI::Option* option) {
         return option->get_name() == "OUT" || isOutput(command, *option);
@@ -146,6 +166,7 @@ bool areOutputsKept(const CLI::App& command, Globals& globals) {
     setOutputRule({});
     // A batch keeps its results by a rule of its own.
     if (command.get_name() == "batch" || !writesFiles(command)) return false;
+    refuseTwice(command);
     const CLI::Option* force = command.get_option_no_throw("--force");
     OutputRule rule{.replace = force && force->count() > 0, .command = command.get_name()};
     setOutputRule(rule);

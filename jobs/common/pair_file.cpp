@@ -60,6 +60,8 @@ void readPairs(const std::string& path, const std::function<void(const PairRow&)
             if (reader.has_column("weight")) row.weight = numberIn(weight, where);
             take(row);
         }
+    } catch (const io::error::can_not_open_file&) {
+        throw InputError(path + ": no such file, or it cannot be read");
     } catch (const io::error::base& error) {
         error.format_error_message();
         throw InputError(error.what());

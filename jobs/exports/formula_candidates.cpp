@@ -33,7 +33,7 @@ struct LobeModel {
 constexpr LobeModel lobeModels[] = {
     {"Lambert", "lambert", 0},
     {"Lambert + GGX", "lambert+ggx", 1},
-    {"Lambert + GGX, F0 in colour", "lambert+ggx:ks=1", 1},  // of metals
+    {"Lambert + GGX, ks 1", "lambert+ggx:ks=1", 1},  // of metals
     {"Lambert + 2 GGX", "lambert+ggx+ggx", 2},
 };
 

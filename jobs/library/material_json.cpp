@@ -9,9 +9,12 @@ namespace ml = material_library;
 using Json = nlohmann::ordered_json;
 
 Json errorJson(const ml::FormError& error) {
-    return {{"mean_log", error.meanLog},       {"log", error.logError},
-            {"relative_l2", error.relativeL2}, {"maximum", error.maximum},
-            {"largest", error.largest},        {"flip", error.flip}};
+    return {{"mean_log", error.meanLog},
+            {"log", error.logError},
+            {"relative_l2", error.relativeL2},
+            {"maximum", error.maximum},
+            {"largest", error.largest},
+            {"flip", error.flip > 0 ? Json(error.flip) : Json(nullptr)}};
 }
 
 }  // namespace

@@ -332,11 +332,10 @@ std::vector<FoundMaterial> searchLibrary(const std::string& path, const std::str
     if (hasTerms(*brdf)) target = space.project(*brdf, materialName(spec), spec).material();
     for (const ml::Material& material : library.materials) {
         const std::optional<ml::LogMaterial> logs = ml::logMaterial(library, material);
-        // Without both, pictures alone decide.
-        found.push_back({.name = material.name,
-                         .distance = target && logs ? ml::distance(space, *target, *logs) : 0,
-                         .picture = {}});
+        found.push_back({.name = material.name, .distance = {}, .picture = {}});
+        if (target && logs) found.back().distance = ml::distance(space, *target, *logs);
     }
+    // Materials without a distance come first: pictures alone decide about them.
     std::ranges::stable_sort(found, {}, &FoundMaterial::distance);
     found.resize(std::min(found.size(), 3 * count + 5));
     const PictureReference reference(*brdf);

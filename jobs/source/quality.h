@@ -23,7 +23,7 @@ struct Poor {
     std::string reason;
     std::string better;
 
-    std::string line() const;  ///< "poor: REASON; better: CALL"
+    std::string line() const;  ///< "poor: REASON; better: CALL", or that none is known
 };
 /// {"reason": …, "better": …}
 nlohmann::ordered_json poorJson(const Poor& poor);

@@ -9,12 +9,16 @@
 
 namespace hshfit {
 
-/// "0.846 %": significant digits, and all that stand before the point.
-inline std::string percent(double share, int digits = 3) {
-    const double value = 100 * share;
+/// "0.85", "64", "127": significant digits, and all that stand before the point.
+inline std::string significant(double value, int digits = 2) {
     // From here on rounding would reach the next power of ten.
-    return std::abs(value) < std::pow(10, digits) - 0.5 ? fmt::format("{:.{}g} %", value, digits)
-                                                        : fmt::format("{:.0f} %", value);
+    return std::abs(value) < std::pow(10, digits) - 0.5 ? fmt::format("{:.{}g}", value, digits)
+                                                        : fmt::format("{:.0f}", value);
+}
+
+/// "0.846 %".
+inline std::string percent(double share, int digits = 3) {
+    return significant(100 * share, digits) + " %";
 }
 
 /// "7 %", and from tenfold on "12 times", which a share in percent would hide behind its digits.

@@ -93,7 +93,7 @@ TEST_F(ChooseCommand, FitsOfLobesHoldAColouredMetal) {
     const Json answer = choose("ggx:alpha=.3,F0=.9/.6/.3 --kinds lobes");
     EXPECT_EQ(answer["rows"].size(), 4);
     for (const Json& row : answer["rows"])
-        if (row["name"] == "Lambert + GGX, F0 in colour") {
+        if (row["name"] == "Lambert + GGX, ks 1") {
             EXPECT_LT(row["picture"]["flip"]["mean"], 1e-6);
             return;
         }

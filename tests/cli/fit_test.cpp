@@ -81,6 +81,9 @@ TEST_F(Cli, FitNamesWhatIsWrong) {
     expectError("fit lambert --model ward --loss l3 -o " + path("x.json"), 2, "cube-root", 0);
     expectError("fit " + path("absent.binary") + " --model ward -o " + path("x.json"), 3,
                 "absent.binary", 0);
+    expectError("fit lambert --model lambert --residuals " + path("one.csv") + " -o " +
+                    path("../") + folder_.filename().string() + "/one.csv",
+                2, "both write", 0);
 }
 
 }  // namespace

@@ -312,6 +312,14 @@ TEST_F(LibraryCommand, SearchFindsTheMaterialItself) {
         EXPECT_GE(row["picture"]["flip"]["mean"], before);
         before = row["picture"]["flip"]["mean"];
     }
+    // A brushed metal has no terms, and no distance from any material.
+    answer("learn" + words(0, 4) + " ggx:ax=.1,ay=.4,F0=.9 --components 2" + free + " -o " +
+           path("b.library"));
+    const Json brushed = answer("search " + path("b.library") + " ggx:ax=.1,ay=.4,F0=.9 --count 1");
+    EXPECT_TRUE(brushed["found"][0]["name"].get<std::string>().find("ax=") != std::string::npos);
+    EXPECT_TRUE(brushed["found"][0]["distance"].is_null());
+    for (const Json& row : answer("list " + path("b.library"))["materials"])
+        EXPECT_TRUE(row["error"]["flip"].is_null()) << row;  // no picture was drawn
 }
 
 TEST_F(LibraryCommand, MixturesHaveTheGeometricMeanOfTheirMaterialsOrUpToTheBoundMore) {

@@ -110,6 +110,12 @@ TEST_F(Lights, PicturesHaveTheHealthOfTheirPixels) {
     EXPECT_TRUE(broken.contains("warnings"));
 }
 
+TEST_F(Lights, WholeNumbersThatAreRadianceAreReadAgainAsThat) {
+    write("codes.ppm", "P6\n4 2\n255\n" + std::string(3 * 4 * 2, '\x66'));
+    const Json document = info(path("codes.ppm") + ":curve=linear");
+    EXPECT_NEAR(document["light_health"]["mean"][0], 0x66 / 255.0, 1e-6);
+}
+
 TEST_F(Lights, BrokenPicturesEndInThreeWithOneLine) {
     const std::vector<float> rgb(3 * 16 * 8, 1.F);
     const auto three = [&](const std::string& spec, const std::string& words) {

@@ -56,8 +56,8 @@ std::string lossSentence(const PictureError& error) {
     add(error.ridge.value / seenRidge, fmt::format("the mirror direction off by {} at {}",
                                                    shareText(error.ridge), angleOf(error.ridge)));
     add(error.colour.mean / seenColour,
-        fmt::format("colours off by CIEDE2000 {:.2g}, most under the {}", error.colour.mean,
-                    error.colour.light));
+        fmt::format("colours off by CIEDE2000 {}, most under the {}",
+                    significant(error.colour.mean), error.colour.light));
     add(std::abs(error.lastAlbedo[last]) / seenRim,
         "the rim " + brightness(error.lastAlbedo[last], error.channels[last]));
     std::ranges::stable_sort(losses, std::greater{}, &Loss::weight);

@@ -17,6 +17,27 @@ inline double along(const Direction& a, const Direction& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
+/// Pixels along a picture, at least: on the horizon their error is 1e-5.
+constexpr std::size_t finePixels = 1024;
+
+/// The picture with each pixel as several of the same radiance, `finePixels` or more in a row.
+std::unique_ptr<PictureLight> refined(const PictureLight& light) {
+    const std::size_t times = (finePixels + light.width - 1) / light.width;
+    auto fine = std::make_unique<PictureLight>(light);
+    fine->width *= times;
+    fine->height *= times;
+    fine->rgb.clear();
+    fine->rgb.reserve(3 * fine->width * fine->height);
+    for (std::size_t row = 0; row < fine->height; ++row)
+        for (std::size_t column = 0; column < fine->width; ++column) {
+            const auto pixel =
+                light.rgb.begin() +
+                static_cast<std::ptrdiff_t>(3 * (row / times * light.width + column / times));
+            fine->rgb.insert(fine->rgb.end(), pixel, pixel + 3);
+        }
+    return fine;
+}
+
 /// Integrals of L w d omega by channel.
 struct Moments {
     std::array<Direction, 3> channel{Direction{0, 0, 0}, Direction{0, 0, 0}, Direction{0, 0, 0}};
@@ -306,9 +327,12 @@ private:
 DirectIrradiance::DirectIrradiance(std::span<const Light> lights) {
     for (const Light& light : lights) {
         const auto* picture = std::get_if<PictureLight>(&light);
-        if (!picture)
+        if (!picture) {
             others_.push_back(&light);
-        else if (picture->layout == PictureLayout::latlong)
+            continue;
+        }
+        if (picture->width < finePixels) picture = fine_.emplace_back(refined(*picture)).get();
+        if (picture->layout == PictureLayout::latlong)
             pictures_.push_back(std::make_unique<Columns>(*picture));
         else
             pictures_.push_back(std::make_unique<Blocks>(*picture));

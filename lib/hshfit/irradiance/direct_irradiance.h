@@ -13,7 +13,8 @@ namespace hshfit::inline irradiance {
 /// Pictures: n times the vector integrals of L w d omega over columns, or blocks, of pixels that
 /// lie above the horizon, exact for latitude-longitude pictures; on the horizon pixel by pixel,
 /// which count with their centre of flux (relative error about a quarter of the squared angle of a
-/// pixel). Discs, panels and skies by the nodes of light_nodes.h. Safe to use from many threads.
+/// pixel); pictures of less than 1024 columns are divided until they have as many. Discs, panels
+/// and skies by the nodes of light_nodes.h. Safe to use from many threads.
 class DirectIrradiance {
 public:
     /// The lights have to outlive it.
@@ -28,6 +29,7 @@ private:
     class Picture;
     class Columns;
     class Blocks;
+    std::vector<std::unique_ptr<PictureLight>> fine_;  ///< of small pictures
     std::vector<std::unique_ptr<Picture>> pictures_;
     std::vector<const Light*> others_;
 };

@@ -5,6 +5,7 @@
 #include <hshfit/light/internal/cap_nodes.h>
 #include <hshfit/light/internal/node_levels.h>
 #include <hshfit/light/internal/sky_nodes.h>
+#include <hshfit/light/light_above.h>
 #include <hshfit/light/panel_plane.h>
 #include <hshfit/light/picture_light.h>
 #include <hshfit/light/sky.h>
@@ -50,6 +51,11 @@ struct RadianceFrom {
     Rgb operator()(const CoefficientLight& light) const { return radianceOf(light, world); }
 };
 
+/// Share of a picture's flux times width, in radians, of its parts.
+double finestAtLevel(int level) {
+    return 1e-3 * std::pow(1.5, -3 * level);
+}
+
 /// Adds the nodes of one light at one level.
 struct AddNodes {
     const Frame& frame;
@@ -91,9 +97,8 @@ struct AddNodes {
     void operator()(const SkyLight& light) const { addSkyNodes(light, frame, level, samples); }
 
     void operator()(const PictureLight& light) const {
-        for (const PictureSample& part : pictureSamples(light, 1e-3 * std::pow(1.5, -3 * level))) {
+        for (const PictureSample& part : pictureSamples(light, finestAtLevel(level)))
             samples.add(frame.toLocal(part.direction), part.flux, 1);
-        }
     }
 
     void operator()(const DirectionalLight& light) const {
@@ -240,6 +245,34 @@ void LightSamples::addAbove(const LightSamples& world, const Frame& frame) {
         n += z[n] > 0 ? 1 : 0;
     }
     for (auto* values : {&x, &y, &z, &flux[0], &flux[1], &flux[2]}) values->resize(n);
+}
+
+LightAbove::LightAbove(std::span<const Light> lights, int level) : level_(level) {
+    for (const Light& light : lights) {
+        const auto* picture = std::get_if<PictureLight>(&light);
+        if (!picture) {
+            others_.push_back(light);
+            continue;
+        }
+        for (const PictureSample& part : pictureSamples(*picture, finestAtLevel(level))) {
+            parts_.x.push_back(part.direction.x);
+            parts_.y.push_back(part.direction.y);
+            parts_.z.push_back(part.direction.z);
+            for (std::size_t c = 0; c < 3; ++c) parts_.flux[c].push_back(part.flux[c]);
+        }
+    }
+}
+
+LightSamples LightAbove::pictures(const Frame& frame) const {
+    LightSamples samples;
+    samples.addAbove(parts_, frame);
+    return samples;
+}
+
+LightSamples LightAbove::at(const Frame& frame) const {
+    LightSamples samples = others(frame);
+    samples.addAbove(parts_, frame);
+    return samples;
 }
 
 Rgb radianceFrom(std::span<const Light> lights, const Direction& world) {

@@ -228,6 +228,11 @@ PictureGeometry fileGeometryOf(const PictureLight& light) {
     return {light.layout, light.fileWidth, light.fileHeight};
 }
 
+PictureOptions optionsOf(const PictureLight& light) {
+    return {
+        .layout = light.fileLayout, .curve = light.curve, .part = light.part, .layer = light.layer};
+}
+
 void forEachRow(const PictureLight& light, const RowVisitor& visit) {
     if (light.fileWidth == 0) {
         const std::span<const float> all(light.rgb);
@@ -236,9 +241,7 @@ void forEachRow(const PictureLight& light, const RowVisitor& visit) {
         }
         return;
     }
-    PictureOptions options{.layout = light.fileLayout, .part = light.part, .layer = light.layer};
-    if (light.curve != TransferCurve::linear) options.curve = light.curve;
-    PictureReader reader(light.file, options);
+    PictureReader reader(light.file, optionsOf(light));
     const PictureGeometry file = reader.facts().geometry;
     if (file.width != light.fileWidth || file.height != light.fileHeight) {
         throw InputError(fmt::format("{}: changed while it was in use", light.file));

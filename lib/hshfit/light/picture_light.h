@@ -32,6 +32,9 @@ std::vector<std::string> remarksOf(std::span<const Light> lights);
 PictureGeometry geometryOf(const PictureLight& light);
 PictureGeometry fileGeometryOf(const PictureLight& light);
 
+/// The options with which PictureReader reads the file of a light again.
+PictureOptions optionsOf(const PictureLight& light);
+
 /// Calls `visit(row, rgb)` for each row from the top at the full resolution of the file, with
 /// fileGeometryOf(light).width times R, G, B, scaled: from memory, or from the file again, a few
 /// rows at a time, where `light.rgb` is a reduction of it. Throws InputError as reading does.

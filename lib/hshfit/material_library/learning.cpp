@@ -330,8 +330,10 @@ LearnedBasis learnBasis(const LogSpace& space, std::span<const Measured> materia
                         const LearnOptions& options, bool pictures) {
     const Vectors all = vectorsOf(space, materials);
     if (all.count() < 2)
-        throw UsageError(
-            "a basis is learned from two channels or more: give more materials, or one in colours");
+        throw UsageError(fmt::format(
+            "a basis is learned from two channels or more that its terms hold, and these materials "
+            "have {}: give more of them, or one in colours",
+            all.count()));
     LearnedBasis learned;
     std::size_t components = options.components;
     addTrials(space, materials, options, pictures, components, learned);

@@ -120,6 +120,8 @@ ReportEntry reportEntry(std::span<const Projection> projections) {
                       .tolerance = c.tolerance,
                       .evaluations = first.evaluations};
     for (const Projection& projection : projections) {
+        if (projections.size() > 1 && projection.coefficients.error >= entry.error)
+            entry.errorOf = projection.coefficients.basis;
         entry.error = std::max(entry.error, projection.coefficients.error);
         entry.evaluations = std::max(entry.evaluations, projection.evaluations);
         entry.curves.push_back(curveOf(projection, entry.energy));

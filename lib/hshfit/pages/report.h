@@ -42,8 +42,9 @@ struct ReportEntry {
     bool condonShortley = false;
     Energy energy;  ///< over solid angle; channels and outgoing directions summed
     std::vector<ReportCurve> curves;
-    double error = 0;      ///< as in Coefficients
-    double tolerance = 0;  ///< as in Coefficients
+    double error = 0;          ///< as in Coefficients; the largest of the bases
+    std::string errorOf = {};  ///< the basis that has it; empty of a single basis
+    double tolerance = 0;      ///< as in Coefficients
     std::size_t evaluations = 0;
     /// Where no basis captures `leastOfNeeds`: the call that captures more, if one is known.
     std::string better = {};

@@ -132,10 +132,11 @@ data entryData(const ReportEntry& entry, std::size_t index) {
     fields.set("outgoing", outgoingText(entry.outgoing));
     fields.set("channels", fmt::format("{}", fmt::join(entry.channels.names(), ", ")));
     fields.set("energy", energyText(entry.energy));
-    fields.set("error",
-               std::isfinite(entry.error)
-                   ? fmt::format("{:.1e} relative, asked for {:.0e}", entry.error, entry.tolerance)
-                   : "none: no coefficients were reached");
+    fields.set("error", std::isfinite(entry.error)
+                            ? fmt::format("{:.1e} relative{}, asked for {:.0e}", entry.error,
+                                          entry.errorOf.empty() ? "" : " (" + entry.errorOf + ")",
+                                          entry.tolerance)
+                            : "none: no coefficients were reached");
     fields.set("evaluations", std::to_string(entry.evaluations));
     if (!entry.energy.finite) fields.set("reason", entry.energy.reason);
     fields.set("hasAccuracy", hasAccuracy(entry));

@@ -338,22 +338,22 @@ std::string shareText(const SeenDifference& difference) {
 
 std::string summaryOf(const PictureError& error) {
     return fmt::format(
-        "FLIP {:.3f}, CIEDE2000 {:.2g}, false dip {}, false peak {}, mirror direction off by {}",
-        error.flip.mean, error.colour.mean, shareText(error.dip), shareText(error.peak),
-        shareText(error.ridge));
+        "FLIP {:.3f}, CIEDE2000 {}, false dip {}, false peak {}, mirror direction off by {}",
+        error.flip.mean, significant(error.colour.mean), shareText(error.dip),
+        shareText(error.peak), shareText(error.ridge));
 }
 
 std::string textOf(const PictureError& error) {
     return fmt::format(
         "albedo off by {} for elevations to 85 degrees\n"
-        "colours off by CIEDE2000 {:.2g} ({:.2g} under the {}), pictures by FLIP {:.3f} ({:.3f} "
+        "colours off by CIEDE2000 {} ({} under the {}), pictures by FLIP {:.3f} ({:.3f} "
         "under the {})\n"
         "highlight: deepest false dip {}, highest false peak {}\n"
         "mirror direction off by {} for elevations to 80 degrees\n"
         "albedo at 89 degrees off by {}\n",
-        textOf(error.albedo, error.channels), error.colour.mean, error.colour.largest,
-        error.colour.light, error.flip.mean, error.flip.largest, error.flip.light,
-        textOf(error.dip), textOf(error.peak), textOf(error.ridge),
+        textOf(error.albedo, error.channels), significant(error.colour.mean),
+        significant(error.colour.largest), error.colour.light, error.flip.mean, error.flip.largest,
+        error.flip.light, textOf(error.dip), textOf(error.peak), textOf(error.ridge),
         textOf(error.lastAlbedo, error.channels));
 }
 

@@ -1,6 +1,7 @@
 #include <hshfit/plan/internal/material_light.h>
 
 #include <hshfit/bases/catalog.h>
+#include <hshfit/light/light_above.h>
 
 #include <fmt/format.h>
 
@@ -44,21 +45,26 @@ std::vector<Frame> framesOf(const Scene& scene, const Material& material, const 
     return frames;
 }
 
-MaterialLight::MaterialLight(const Scene& scene, const Material& material, const Brdf& brdf)
+MaterialLight::MaterialLight(const Scene& scene, const Material& material, const Brdf& brdf,
+                             const TimeLimit& limit)
     : budget_(material.budget),
       views_(viewsOf(scene.views, searchStep, 0)),
       frames_(framesOf(scene, material, brdf)) {
     for (int level = 0; level <= lastLevel; ++level) {
+        const LightAbove above(scene.lights, level);
         std::vector<LightSamples> light;
+        std::size_t count = 0;
         for (const Frame& frame : frames_) {
-            light.push_back(sampleLights(scene.lights, frame, level));
+            light.push_back(above.at(frame));
+            count += light.back().count();
+            if (level > 0 && count > mostSamples) return;
         }
-        if (level > 0 && countOf(light) > mostSamples) return;
         std::vector<Radiance> truth = radianceIn(light, brdf, views_);
         if (level > 0) change_ = light::errorOf(budget_, views_, truth, truth_);
         light_ = std::move(light);
         truth_ = std::move(truth);
-        if (level > 0 && converged()) return;
+        isEarly_ = level > 0 && limit.isOver();
+        if (isEarly_ || (level > 0 && converged())) return;
     }
 }
 

@@ -3,6 +3,7 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/brdf/one_channel.h>
 #include <hshfit/error.h>
+#include <hshfit/light/light_above.h>
 #include <hshfit/representation/split.h>
 
 #include <fmt/format.h>
@@ -69,7 +70,7 @@ MaterialSearch::MaterialSearch(const Scene& scene, const Material& material, con
             fmt::format("{}: material '{}' is spectral; 'rgb:{}' plans with its colour", scene.file,
                         material.name, material.brdf));
     }
-    light_ = std::make_unique<MaterialLight>(scene, material, *brdf);
+    light_ = std::make_unique<MaterialLight>(scene, material, *brdf, limit.share(4));
     addVersion(material.brdf, std::move(brdf));
 }
 
@@ -133,8 +134,9 @@ void MaterialSearch::considerOneChannel() {
 void MaterialSearch::describeLight() {
     lightBands_.assign(lightOrder, 0.0);
     const auto basis = bases::make("hsh", lightOrder);
+    const LightAbove above(scene_.lights, lightLevel);
     for (const Frame& frame : light_->frames()) {
-        const LightSamples samples = sampleLights(scene_.lights, frame, lightLevel);
+        const LightSamples samples = above.at(frame);
         const std::vector<double> power = BasisLight(*basis, Quantity::brdf, samples).bandPower();
         for (std::size_t l = 0; l < power.size(); ++l) lightBands_[l] += power[l];
     }

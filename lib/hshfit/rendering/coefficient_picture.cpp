@@ -2,6 +2,7 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/brdf/transmission.h>
+#include <hshfit/light/light_above.h>
 #include <hshfit/light/picture_light.h>
 #include <hshfit/light/radiance.h>
 #include <hshfit/rendering/internal/light_cells.h>
@@ -38,46 +39,6 @@ std::vector<Light> withoutCostlySkies(std::span<const Light> lights) {
     }
     return result;
 }
-
-/// The lights as samples above any normal: parts of pictures are cut once, in the world.
-class LightAbove {
-public:
-    LightAbove(std::span<const Light> lights, int level) : level_(level) {
-        for (const Light& light : lights) {
-            const auto* picture = std::get_if<PictureLight>(&light);
-            if (!picture) {
-                others_.push_back(light);
-                continue;
-            }
-            for (const PictureSample& part :
-                 pictureSamples(*picture, 1e-3 * std::pow(1.5, -3 * level))) {
-                parts_.x.push_back(part.direction.x);
-                parts_.y.push_back(part.direction.y);
-                parts_.z.push_back(part.direction.z);
-                for (std::size_t c = 0; c < 3; ++c) parts_.flux[c].push_back(part.flux[c]);
-            }
-        }
-    }
-    /// The parts of pictures alone, and the other lights.
-    LightSamples pictures(const Frame& frame) const {
-        LightSamples samples;
-        samples.addAbove(parts_, frame);
-        return samples;
-    }
-    LightSamples others(const Frame& frame) const { return sampleLights(others_, frame, level_); }
-    LightSamples at(const Frame& frame) const {
-        LightSamples samples = others(frame);
-        samples.addAbove(parts_, frame);
-        return samples;
-    }
-    std::size_t pictureParts() const { return parts_.count(); }
-    bool hasOthers() const { return !others_.empty(); }
-
-private:
-    int level_;
-    LightSamples parts_;  ///< in the world
-    std::vector<Light> others_;
-};
 
 /// Coefficients of materials met with light at single points.
 class CoefficientShader {

@@ -445,8 +445,8 @@ LobeSolution LobeSearch::continued(const LobeTarget& target, double theta,
             turnedAway(place.axis, (theta - before) * (place.axis.x > 0 ? -share : share));
         const double leans = angleBetween(axis, {0, 0, 1});
         const double bound = std::min(mostLean * theta, radians(89.5));
-        if (leans > bound) {
-            const double length = std::hypot(axis.x, axis.y);
+        const double length = std::hypot(axis.x, axis.y);
+        if (leans > bound && length > 0) {
             axis = {axis.x / length * std::sin(bound), axis.y / length * std::sin(bound),
                     std::cos(bound)};
         }

@@ -4,6 +4,7 @@
 #include <hshfit/light/radiance.h>
 #include <hshfit/light/views.h>
 #include <hshfit/scene/scene.h>
+#include <hshfit/time_limit.h>
 
 #include <map>
 #include <string>
@@ -20,13 +21,17 @@ using scene::Scene;
 class MaterialLight {
 public:
     /// Refines until two levels agree to a twentieth of the budget, in which case `converged`
-    /// is true, or a quarter of a million samples are reached.
-    MaterialLight(const Scene& scene, const Material& material, const Brdf& brdf);
+    /// is true, a quarter of a million samples are reached, or the time is over, when a quarter of
+    /// the budget does.
+    MaterialLight(const Scene& scene, const Material& material, const Brdf& brdf,
+                  const TimeLimit& limit = {});
 
     const Budget& budget() const { return budget_; }
     const Views& views() const { return views_; }
     const std::vector<Radiance>& truth() const { return truth_; }
-    bool converged() const { return change_ <= budget_.error / tolerated; }
+    bool converged() const {
+        return change_ <= budget_.error / (isEarly_ ? toleratedEarly : tolerated);
+    }
     double change() const { return change_; }
     /// All light samples over all orientations.
     std::size_t samples() const;
@@ -46,13 +51,14 @@ public:
     }
 
 private:
-    static constexpr double tolerated = 20;
+    static constexpr double tolerated = 20, toleratedEarly = 4;
     Budget budget_;
     Views views_;
     std::vector<Frame> frames_;
     std::vector<LightSamples> light_;
     std::vector<Radiance> truth_;
     double change_ = 1;
+    bool isEarly_ = false;  ///< the time was over
     std::map<std::string, std::vector<BasisLight>> in_;
 };
 
