@@ -50,13 +50,6 @@ constexpr const char* materialHead =
     "material                         kind        bytes  mean log  log       rel. L2   maximum   "
     "FLIP\n";
 
-std::vector<std::string> fallbacksOf(const ml::Library& library) {
-    std::vector<std::string> names;
-    for (const ml::Material& m : library.materials)
-        if (m.kind != ml::Kind::coded) names.push_back(m.name);
-    return names;
-}
-
 /// Bytes of the numbers of the materials.
 std::size_t bytesOf(const ml::Library& library) {
     std::size_t bytes = 0;
@@ -67,16 +60,16 @@ std::size_t bytesOf(const ml::Library& library) {
 void printLearned(const jobs::LearnedLibrary& learned, const LibraryArguments& arguments,
                   const Globals& globals) {
     const ml::Library& library = learned.library;
-    const std::vector<std::string> fallbacks = fallbacksOf(library);
+    const std::vector<std::string>& fallbacks = learned.fallbacks;
     Json trials = Json::array();
     for (const ml::ComponentsTrial& trial : learned.basis.trials)
         trials.push_back({{"components", trial.components}, {"error", trial.error}});
     if (globals.json) {
         Json document = headOf(arguments);
-        document["materials"] = library.materials.size();
+        document["materials"] = learned.materials;
         document["components"] = library.basis.size();
         document["bytes"] = {{"basis", library.basis.bytes()},
-                             {"materials", bytesOf(library)},
+                             {"materials", learned.bytes},
                              {"channel", library.basis.channelBytes()}};
         document["held_out"] = trials;
         document["unseen"] = {{"log", library.unseen}, {"flip", library.unseenFlip}};
@@ -87,7 +80,7 @@ void printLearned(const jobs::LearnedLibrary& learned, const LibraryArguments& a
     }
     std::string text =
         fmt::format("{}: {} materials, {} components; basis {} bytes, a channel {} bytes\n",
-                    arguments.output, library.materials.size(), library.basis.size(),
+                    arguments.output, learned.materials, library.basis.size(),
                     library.basis.bytes(), library.basis.channelBytes());
     for (const ml::ComponentsTrial& trial : learned.basis.trials)
         text += fmt::format(

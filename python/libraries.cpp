@@ -68,7 +68,8 @@ std::shared_ptr<Opened> learned(const py::object& specs, const py::object& file,
                   options.encode.flip.value_or(how.limits.flip)};
     auto library = std::make_shared<Opened>(Opened{pathOf(file, "file"), {}});
     watched(progress, {}, [&](const jobs::Listener& listener) {
-        library->library = jobs::learnLibrary(sources, library->path, how, listener).library;
+        jobs::learnLibrary(sources, library->path, how, listener);
+        library->library = ml::readLibrary(library->path);
     });
     return library;
 }

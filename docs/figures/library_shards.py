@@ -7,10 +7,10 @@ merge`, and whether the bytes are those of the first. --pictures: with the limit
 """
 import argparse
 import hashlib
-import os
 import pathlib
 import random
 import subprocess
+import sys
 
 
 def materials(count):
@@ -21,14 +21,25 @@ def materials(count):
         yield f"lambert:kd={kd} + ggx:alpha={alpha:.6f},F0={f0:.6f}"
 
 
+# A process begins with the memory of the one that it is forked from, so that the program is started
+# by a small one.
+MEASURED = """
+import os, subprocess, sys
+with subprocess.Popen(sys.argv[1:], stdout=subprocess.DEVNULL) as process:
+    _, status, used = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+print(process.returncode, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024)
+"""
+
+
 def run(*words):
     """CPU seconds and the largest memory in megabytes."""
-    with subprocess.Popen([*map(str, words)], stdout=subprocess.DEVNULL) as process:
-        _, status, used = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-    if process.returncode:
-        raise SystemExit(f"{' '.join(map(str, words))[:200]}: exit code {process.returncode}")
-    return used.ru_utime + used.ru_stime, used.ru_maxrss / 1024
+    words = [str(word) for word in words]
+    answer = subprocess.run([sys.executable, "-c", MEASURED, *words], stdout=subprocess.PIPE,
+                            check=True, text=True).stdout.split()
+    if answer[0] != "0":
+        raise SystemExit(f"{' '.join(words)[:200]}: exit code {answer[0]}")
+    return float(answer[1]), float(answer[2])
 
 
 def main():

@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""library_simulated.py PROGRAM LIBRARY OUT COUNT [--shards N,...]
+"""library_simulated.py PROGRAM LIBRARY OUT COUNT [--shards N,...] [--channels 3]
 
 The cost of a library of very many materials, and whether its bytes depend on shards. COUNT grey
 materials are drawn in the terms of libraries: a normal distribution with the mean and covariance
-of the channels of LIBRARY (which is not final), the bound of one of these channels. They are
+of the channels of LIBRARY (which is not final), the bound of one of these channels. With
+--channels 3 they have colours, each channel drawn by itself. They are
 written as if `library learn` had projected them, without codes; nothing is read or projected. For
 each number of shards: CPU seconds and the largest memory of `library merge`, which learns from
 all, and whether the bytes are those of the first.
@@ -54,22 +55,24 @@ def write_tensors(path, fields):
             file.write(b"\0" * (-file.tell() % 8) + array.tobytes())
 
 
-def drawn(source, count):
-    """Numbers of `count` channels in all terms, their bounds and their rests."""
+def drawn(source, count, channels):
+    """Numbers of the channels of `count` materials in all terms, their bounds, and rests."""
     random = numpy.random.default_rng(1)
     rows = source["exponents"].astype(float)
     mean = rows.mean(axis=0)
     _, spreads, axes = numpy.linalg.svd((rows - mean) / numpy.sqrt(len(rows) - 1),
                                         full_matrices=False)
-    numbers = mean + random.standard_normal((count, len(spreads))) * spreads @ axes
-    chosen = random.integers(len(rows), size=count)
+    numbers = mean + random.standard_normal((count * channels, len(spreads))) * spreads @ axes
+    chosen = random.integers(len(rows), size=count * channels)
     rests = source["rests"][random.integers(len(source["rests"]), size=count)]
-    return numbers.astype("f4"), source["tops"][chosen], rests
+    return (numbers.astype("f4").reshape(count, channels, -1),
+            source["tops"][chosen].reshape(count, channels), rests)
 
 
 def write_shard(path, source, materials, components):
     """materials: those of `drawn` whose numbers are the last."""
     exponents, tops, rests, numbers = materials
+    channels = tops.shape[1]
     error = {"mean_log": 0.0, "log": 0.0, "relative_l2": 0.0, "maximum": 0.0, "largest": 1.0,
              "flip": 0.0}
     head = json.loads(source["hshfit_library"].tobytes())
@@ -80,15 +83,15 @@ def write_shard(path, source, materials, components):
     names = [f"m{n:06}" for n in numbers]
     head["asked"]["components"] = components
     head["limit"] = {"log": 10.0, "maximum": 10.0, "flip": 10.0}
-    head["measured"] = [{"name": name, "source": "drawn", "channels": 1, "error": error}
+    head["measured"] = [{"name": name, "source": "drawn", "channels": channels, "error": error}
                         for name in names]
-    head["materials"] = [{"name": name, "source": "drawn", "kind": "coded", "channels": 1,
-                          "bytes": channel, "error": error} for name in names]
+    head["materials"] = [{"name": name, "source": "drawn", "kind": "coded", "channels": channels,
+                          "bytes": channels * channel, "error": error} for name in names]
     write_tensors(path, {
         "hshfit_library": numpy.frombuffer(json.dumps(head).encode(), "u1"),
         "mean": source["mean"], "components": source["components"], "widths": source["widths"],
-        "codes": numpy.zeros(len(names) * channel, "u1"), "exponents": exponents, "tops": tops,
-        "rests": rests})
+        "codes": numpy.zeros(tops.size * channel, "u1"),
+        "exponents": exponents.reshape(tops.size, -1), "tops": tops.ravel(), "rests": rests})
 
 
 def main():
@@ -99,10 +102,11 @@ def main():
     parser.add_argument("count", type=int)
     parser.add_argument("--shards", default="1,2,8")
     parser.add_argument("--components", type=int, default=20)
+    parser.add_argument("--channels", type=int, choices=(1, 3), default=1)
     arguments = parser.parse_args()
     arguments.out.mkdir(parents=True, exist_ok=True)
     source = read_tensors(arguments.library)
-    exponents, tops, rests = drawn(source, arguments.count)
+    exponents, tops, rests = drawn(source, arguments.count, arguments.channels)
     first = None
     print("| shards | MB of shards | merge, CPU s | a material | MB in use | library, MB | bytes |")
     print("|---|---|---|---|---|---|---|")

@@ -7,6 +7,8 @@
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/material_library/library_file.h>
+#include <hshfit/material_library/library_writer.h>
+#include <hshfit/material_library/material_store.h>
 #include <hshfit/specification/parameters.h>
 #include <hshfit/time_limit.h>
 #include <hshfit/wording.h>
@@ -40,82 +42,102 @@ std::string textOf(const ml::Limits& limits) {
     return fmt::format("{}, {}, {}", limits.log, limits.maximum, limits.flip);
 }
 
-/// A material as the learning takes it: one of the two.
-struct Entry {
-    std::optional<ml::Measured> measured = {};
-    std::optional<ml::Material> own = {};
-};
-
-Entry entryOf(const ml::LogSpace& space, const std::string& spec, const ml::Limits& limits) {
+/// Projects a material into the store, or gives it a form of its own.
+void addEntry(const ml::LogSpace& space, const std::string& spec, const ml::Limits& limits,
+              ml::MaterialStore& store) {
     const std::string name = materialName(spec);
     const auto brdf = openSource(spec);
-    Entry entry;
-    if (hasTerms(*brdf)) entry.measured = space.project(*brdf, name, spec, limits.pictures());
-    const std::string reason = whyOwn(*brdf, entry.measured.value_or(ml::Measured{}), limits);
+    ml::Measured measured;
+    if (hasTerms(*brdf)) measured = space.project(*brdf, name, spec, limits.pictures());
+    const std::string reason = whyOwn(*brdf, measured, limits);
     if (reason.empty()) {
         requireReadable(*brdf);
-        return entry;
+        return store.add(measured);
     }
-    entry.measured.reset();
-    entry.own = ml::withHalfway(*brdf, name, spec, limits.pictures());
-    entry.own->fallback = reason;
+    ml::Material own = ml::withHalfway(*brdf, name, spec, limits.pictures());
+    own.fallback = reason;
     requireReadable(*brdf);
-    return entry;
+    store.add(own);
 }
 
-/// The entry of a material for which the time is over is empty.
-std::vector<Entry> entriesOf(const ml::LogSpace& space, const std::vector<std::string>& specs,
-                             const ml::Limits& limits, const TimeLimit& time,
-                             const Listener& listener) {
+/// Adds the materials to the store; returns those for which the time was over.
+std::vector<std::string> addEntries(const ml::LogSpace& space,
+                                    const std::vector<std::string>& specs, const ml::Limits& limits,
+                                    const TimeLimit& time, const Listener& listener,
+                                    ml::MaterialStore& store) {
     constexpr std::size_t always = 2;  // a basis is learned from two
     ml::errorPairs();
-    std::vector<Entry> entries(specs.size());
+    std::vector<char> taken(specs.size(), 0);
     const std::vector<InputFailure> failures =
         forEachInput(specs, listener, "learn", [&](std::size_t i, const ProgressCall& progress) {
             if (i >= always && time.isOver()) return;
             if (progress) progress(0, 1);
-            entries[i] = entryOf(space, specs[i], limits);
+            addEntry(space, specs[i], limits, store);
+            taken[i] = 1;
             if (progress) progress(1, 1);
         });
-    if (failures.empty()) return entries;
-    const InputFailure& first = failures.front();
-    throw Error(first.code,
-                failures.size() == 1
-                    ? first.reason
-                    : fmt::format("{} of {} materials failed, so that nothing is learned; the "
-                                  "first: {}",
-                                  failures.size(), specs.size(), first.reason));
+    if (!failures.empty()) {
+        const InputFailure& first = failures.front();
+        throw Error(first.code,
+                    failures.size() == 1
+                        ? first.reason
+                        : fmt::format("{} of {} materials failed, so that nothing is learned; the "
+                                      "first: {}",
+                                      failures.size(), specs.size(), first.reason));
+    }
+    std::vector<std::string> leftOut;
+    for (std::size_t i = 0; i < specs.size(); ++i)
+        if (!taken[i]) leftOut.push_back(specs[i]);
+    return leftOut;
 }
 
-void write(ml::Library& library, const std::string& output, bool final) {
-    if (final) library.measured.clear();
+void write(const ml::Library& library, const std::string& output) {
     AtomicFile file(output);
     ml::writeLibrary(library, file);
     file.commit();
 }
 
-/// Takes the materials that learning again needs out of a library.
-void take(ml::Library library, const std::string& path, std::vector<ml::Measured>& measured,
-          std::vector<ml::Material>& own) {
-    const auto learned = std::ranges::count_if(
-        library.materials, [](const ml::Material& m) { return m.kind != ml::Kind::halfway; });
-    if (static_cast<std::size_t>(learned) != library.measured.size())
+/// Adds the materials that learning again needs of a library to the store; the library without its
+/// materials.
+ml::Library addLibrary(const std::string& path, ml::MaterialStore& store) {
+    std::size_t learned = 0, kept = 0;
+    ml::Library library = ml::readLibrary(path, {[&](const ml::Material& material) {
+                                                     if (material.kind == ml::Kind::halfway)
+                                                         store.add(material);
+                                                     else
+                                                         ++learned;
+                                                 },
+                                                 [&](const ml::Measured& measured) {
+                                                     store.add(measured);
+                                                     ++kept;
+                                                 }});
+    if (learned != kept)
         throw InputError(
             fmt::format("{}: is final: it does not hold the materials that a basis is "
                         "learned from; learn it without {}",
                         path, Setting{"LearnLibraryOptions::final"}));
-    std::ranges::move(library.measured, std::back_inserter(measured));
-    for (ml::Material& material : library.materials)
-        if (material.kind == ml::Kind::halfway) own.push_back(std::move(material));
+    return library;
 }
 
-LearnedLibrary learnFrom(const ml::LogSpace& space, std::vector<ml::Measured> measured,
-                         std::vector<ml::Material> own, const LearnLibraryOptions& options,
-                         const std::string& output) {
+LearnedLibrary learnFrom(const ml::LogSpace& space, ml::MaterialStore& store,
+                         const LearnLibraryOptions& options, const std::string& output) {
+    store.sort();
     LearnedLibrary learned;
-    learned.library = ml::learn(space, std::move(measured), std::move(own), options.learn,
-                                options.limits, &learned.basis);
-    write(learned.library, output, options.final);
+    ml::LibraryWriter writer(store.folder());
+    learned.library = ml::learn(
+        space, store, options.learn, options.limits,
+        [&](const ml::Material& material) {
+            writer.add(material);
+            ++learned.materials;
+            learned.bytes += material.bytes;
+            if (material.kind != ml::Kind::coded) learned.fallbacks.push_back(material.name);
+        },
+        &learned.basis);
+    AtomicFile file(output);
+    ml::MeasuredList measured;
+    if (!options.final) measured = {store.size(), [&](std::size_t k) { return store.measured(k); }};
+    writer.write(learned.library, measured, file);
+    file.commit();
     return learned;
 }
 
@@ -137,29 +159,22 @@ LearnedLibrary learnLibrary(const std::vector<std::string>& specs, const std::st
                             const LearnLibraryOptions& asked, const Listener& listener) {
     LearnLibraryOptions options = asked;
     const TimeLimit time(options.seconds);
-    std::vector<ml::Measured> measured;
-    std::vector<ml::Material> own;
+    ml::MaterialStore store(scratchFolder(output));
     if (!options.addTo.empty()) {
-        ml::Library before = ml::readLibrary(options.addTo);
+        const ml::Library before = addLibrary(options.addTo, store);
         options.learn = before.asked;
         options.limits = before.limits;
-        take(std::move(before), options.addTo, measured, own);
     }
     const ml::LogSpace space;
     const std::vector<std::string> inputs = expandInputs(specs);
-    std::vector<Entry> entries = entriesOf(space, inputs, options.limits, time, listener);
-    std::vector<std::string> leftOut;
-    for (std::size_t i = 0; i < inputs.size(); ++i) {
-        if (!entries[i].measured && !entries[i].own) leftOut.push_back(inputs[i]);
-        if (entries[i].measured) measured.push_back(std::move(*entries[i].measured));
-        if (entries[i].own) own.push_back(std::move(*entries[i].own));
-    }
+    std::vector<std::string> leftOut =
+        addEntries(space, inputs, options.limits, time, listener, store);
     if (!leftOut.empty())
         listener.say(
             fmt::format("the time was over after {} of {} materials; {} is the first that "
                         "is left out",
                         inputs.size() - leftOut.size(), inputs.size(), leftOut.front()));
-    LearnedLibrary learned = learnFrom(space, std::move(measured), std::move(own), options, output);
+    LearnedLibrary learned = learnFrom(space, store, options, output);
     learned.leftOut = std::move(leftOut);
     return learned;
 }
@@ -167,10 +182,9 @@ LearnedLibrary learnLibrary(const std::vector<std::string>& specs, const std::st
 LearnedLibrary mergeLibraries(const std::vector<std::string>& paths, const std::string& output,
                               const MergeLibraryOptions& asked) {
     LearnLibraryOptions options{.final = asked.final};
-    std::vector<ml::Measured> measured;
-    std::vector<ml::Material> own;
+    ml::MaterialStore store(scratchFolder(output));
     for (const std::string& path : paths) {
-        ml::Library library = ml::readLibrary(path);
+        const ml::Library library = addLibrary(path, store);
         if (&path == &paths.front()) {
             options.learn = asked.learn.value_or(library.asked);
             options.limits = library.limits;
@@ -182,10 +196,9 @@ LearnedLibrary mergeLibraries(const std::vector<std::string>& paths, const std::
                 path, paths.front(), library.asked.components, options.learn.components,
                 library.asked.bytes, options.learn.bytes, library.asked.heldOut,
                 options.learn.heldOut, textOf(library.limits), textOf(options.limits)));
-        take(std::move(library), path, measured, own);
     }
     const ml::LogSpace space;
-    return learnFrom(space, std::move(measured), std::move(own), options, output);
+    return learnFrom(space, store, options, output);
 }
 
 EncodedMaterial encodeMaterial(const std::string& path, const std::string& spec,
@@ -230,7 +243,7 @@ EncodedMaterial encodeMaterial(const std::string& path, const std::string& spec,
     } else {
         library.basis = {};
     }
-    write(library, output, true);
+    write(library, output);
     return encoded;
 }
 
@@ -310,7 +323,7 @@ std::vector<MixedMaterial> mixMaterials(const std::vector<std::string>& specs,
         library.materials.push_back(std::move(material));
     }
     std::ranges::sort(library.materials, {}, &ml::Material::name);
-    write(library, output, true);
+    write(library, output);
     return path;
 }
 
@@ -318,7 +331,7 @@ ml::Material decodeMaterial(const std::string& spec, const std::string& output) 
     ml::Material material = plainMaterial(spec);
     ml::Library one;
     one.materials = {material};
-    write(one, output, true);
+    write(one, output);
     return material;
 }
 

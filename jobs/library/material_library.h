@@ -22,16 +22,18 @@ struct LearnLibraryOptions {
 };
 
 struct LearnedLibrary {
-    material_library::Library library;
+    material_library::Library library;  ///< without its materials, which are in the file
     material_library::LearnedBasis basis;
-    std::vector<std::string> leftOut = {};  ///< specifications that the time was not enough for
+    std::size_t materials = 0, bytes = 0;     ///< and bytes of their numbers
+    std::vector<std::string> fallbacks = {};  ///< materials with forms of their own
+    std::vector<std::string> leftOut = {};    ///< specifications that the time was not enough for
 };
 
 /// Learns a library from specifications, files and folders of files, and writes it; names are
 /// nameOf(spec) with '_' for what a name may not have. Materials that the terms of libraries do not
 /// hold within the limits, and anisotropic ones, keep halfway forms. Nothing is written where one
-/// of the materials that are read cannot be. Throws InputError, UsageError, NumericError and
-/// OutputError.
+/// of the materials that are read cannot be. Materials are on a disk meanwhile (scratchFolder()),
+/// some 100 bytes of each in memory. Throws InputError, UsageError, NumericError and OutputError.
 LearnedLibrary learnLibrary(const std::vector<std::string>& specs, const std::string& output,
                             const LearnLibraryOptions& options, const Listener& listener = {});
 

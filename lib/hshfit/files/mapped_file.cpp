@@ -148,6 +148,12 @@ MappedFile::~MappedFile() {
     close(descriptor_);
 }
 
+void MappedFile::releasePages() const {
+    // Advice: pages that stay cost memory and nothing else. Those that stand for lost ones become
+    // zeros again, as they were.
+    ::madvise(const_cast<unsigned char*>(data_), size_, MADV_DONTNEED);
+}
+
 void MappedFile::checkIntact() const {
     struct stat status = {};
     const bool known = fstat(descriptor_, &status) == 0;

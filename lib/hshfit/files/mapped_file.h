@@ -29,6 +29,9 @@ public:
     const unsigned char* data() const { return data_; }
     std::span<const unsigned char> bytes() const { return {data_, size_}; }
 
+    /// Lets go of the memory of pages that were read; they are read again when they are touched.
+    void releasePages() const;
+
     /// Throws InputError if a page was lost, or if the file is shorter than when it was opened or
     /// was written to since then. From any thread.
     void checkIntact() const;

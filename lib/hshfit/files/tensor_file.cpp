@@ -36,10 +36,6 @@ constexpr std::array<std::pair<std::string_view, std::size_t>, 12> types = {{{""
 // Bounds of what messages show; RGL files stay far below both.
 constexpr std::uint16_t maxNameLength = 255, maxDimensions = 16;
 
-std::size_t bytesOf(TensorFile::Type type) {
-    return types[static_cast<std::size_t>(type)].second;
-}
-
 /// The table of contents, with messages that name what the file breaks off within.
 class Contents {
 public:
@@ -113,6 +109,10 @@ TensorFile::Field takeField(Contents& contents, const std::string& source, std::
 }
 
 }  // namespace
+
+std::size_t bytesOf(TensorFile::Type type) {
+    return types[static_cast<std::size_t>(type)].second;
+}
 
 std::string_view typeName(TensorFile::Type type) {
     return types[static_cast<std::size_t>(type)].first;

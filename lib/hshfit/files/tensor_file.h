@@ -63,6 +63,9 @@ private:
 /// "f32" and the like.
 std::string_view typeName(TensorFile::Type type);
 
+/// Bytes of a number of this type.
+std::size_t bytesOf(TensorFile::Type type);
+
 /// "1 x 8 x 128".
 std::string shapeText(std::span<const std::uint64_t> shape);
 

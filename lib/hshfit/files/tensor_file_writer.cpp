@@ -20,36 +20,37 @@ void append(std::string& out, Value value) {
     out.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-[[maybe_unused]] std::uint64_t countOf(const std::vector<std::uint64_t>& shape) {
+std::uint64_t countOf(const std::vector<std::uint64_t>& shape) {
     return std::accumulate(shape.begin(), shape.end(), std::uint64_t{1}, std::multiplies<>());
 }
 
 }  // namespace
 
 void TensorFileWriter::add(std::string name, TensorFile::Type type,
+                           std::vector<std::uint64_t> shape, std::function<void(AtomicFile&)> put) {
+    const std::uint64_t bytes = countOf(shape) * bytesOf(type);
+    fields_.push_back({std::move(name), type, std::move(shape), bytes, std::move(put)});
+}
+
+void TensorFileWriter::add(std::string name, TensorFile::Type type,
                            std::vector<std::uint64_t> shape, std::span<const std::byte> bytes) {
-    fields_.push_back({std::move(name), type, std::move(shape), bytes});
+    assert(countOf(shape) * bytesOf(type) == bytes.size());
+    add(std::move(name), type, std::move(shape), [bytes](AtomicFile& file) { file.write(bytes); });
 }
 
 void TensorFileWriter::add(std::string name, std::vector<std::uint64_t> shape,
                            std::span<const float> values) {
-    assert(countOf(shape) == values.size());
-    fields_.push_back(
-        {std::move(name), TensorFile::Type::f32, std::move(shape), std::as_bytes(values)});
+    add(std::move(name), TensorFile::Type::f32, std::move(shape), std::as_bytes(values));
 }
 
 void TensorFileWriter::add(std::string name, std::vector<std::uint64_t> shape,
                            std::span<const std::uint32_t> values) {
-    assert(countOf(shape) == values.size());
-    fields_.push_back(
-        {std::move(name), TensorFile::Type::u32, std::move(shape), std::as_bytes(values)});
+    add(std::move(name), TensorFile::Type::u32, std::move(shape), std::as_bytes(values));
 }
 
 void TensorFileWriter::add(std::string name, std::string_view octets) {
-    fields_.push_back({std::move(name),
-                       TensorFile::Type::u8,
-                       {octets.size()},
-                       std::as_bytes(std::span(octets.data(), octets.size()))});
+    add(std::move(name), TensorFile::Type::u8, {octets.size()},
+        std::as_bytes(std::span(octets.data(), octets.size())));
 }
 
 void TensorFileWriter::write(AtomicFile& file) const {
@@ -71,15 +72,15 @@ void TensorFileWriter::write(AtomicFile& file) const {
         append(head, static_cast<std::uint8_t>(field.type));
         append(head, offset);
         for (const std::uint64_t size : field.shape) append(head, size);
-        offset += field.bytes.size();
+        offset += field.bytes;
     }
 
     file.write(head);
     std::uint64_t position = head.size();
     for (const Field& field : fields_) {
         file.write(std::string(aligned(position) - position, '\0'));
-        file.write(field.bytes);
-        position = aligned(position) + field.bytes.size();
+        field.put(file);
+        position = aligned(position) + field.bytes;
     }
 }
 

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -23,6 +24,9 @@ public:
              std::span<const std::uint32_t> values);
     /// Octets with one dimension.
     void add(std::string name, std::string_view octets);
+    /// An array that is not in memory at once: `put` writes its bytes to the end of the file.
+    void add(std::string name, TensorFile::Type type, std::vector<std::uint64_t> shape,
+             std::function<void(AtomicFile&)> put);
 
     void write(AtomicFile& file) const;
     /// Throws OutputError if the file cannot be written or stands and is not to be replaced.
@@ -33,7 +37,8 @@ private:
         std::string name;
         TensorFile::Type type;
         std::vector<std::uint64_t> shape;
-        std::span<const std::byte> bytes;
+        std::uint64_t bytes;
+        std::function<void(AtomicFile&)> put;
     };
     std::vector<Field> fields_;
 };

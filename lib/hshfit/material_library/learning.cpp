@@ -3,6 +3,7 @@
 #include <hshfit/each_in_parallel.h>
 #include <hshfit/error.h>
 #include <hshfit/material_library/internal/log_samples.h>
+#include <hshfit/material_library/internal/vector_file.h>
 #include <hshfit/pictures/picture_error.h>
 #include <hshfit/wording.h>
 
@@ -12,6 +13,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 namespace hshfit::material_library {
 namespace {
@@ -27,32 +30,6 @@ constexpr int robustRounds = 2;
 constexpr std::size_t mostPictures = 64;
 constexpr std::size_t fewestFolds = 4, mostFolds = 10;  ///< parts by which distances are taken
 
-/// Channels of materials as columns of d = L^T c, and the material of each.
-struct Vectors {
-    Eigen::MatrixXd columns;
-    std::vector<std::size_t> material;
-
-    Eigen::Index count() const { return columns.cols(); }
-};
-
-Vectors vectorsOf(const LogSpace& space, std::span<const Measured> materials) {
-    const Eigen::MatrixXd& lower = space.samples().lower;
-    const auto terms = lower.rows();
-    Vectors all;
-    for (std::size_t m = 0; m < materials.size(); ++m)
-        all.material.insert(all.material.end(), materials[m].channels(), m);
-    all.columns.resize(terms, static_cast<Eigen::Index>(all.material.size()));
-    Eigen::Index column = 0;
-    for (const Measured& material : materials)
-        for (std::size_t c = 0; c < material.channels(); ++c)
-            all.columns.col(column++) =
-                lower.transpose() *
-                Eigen::Map<const Eigen::VectorXf>(
-                    material.exponents.data() + c * static_cast<std::size_t>(terms), terms)
-                    .cast<double>();
-    return all;
-}
-
 /// Sums over vectors x with weights: of the weights, of x, and of x x^T.
 struct Moments {
     double weight = 0;
@@ -60,22 +37,30 @@ struct Moments {
     Eigen::MatrixXd product;
 };
 
-/// Moments of the columns of the materials that `counts` accepts, about `centre`.
-template <class Counts>
-Moments momentsOf(const Vectors& all, const std::vector<double>& weights,
-                  const Eigen::VectorXd& centre, const Counts& counts) {
-    std::vector<Eigen::Index> used;
-    for (Eigen::Index v = 0; v < all.count(); ++v)
-        if (counts(all.material[static_cast<std::size_t>(v)])) used.push_back(v);
-    const Eigen::Index terms = all.columns.rows(), count = static_cast<Eigen::Index>(used.size());
-    Eigen::VectorXd w(count);
-    for (Eigen::Index k = 0; k < count; ++k)
-        w[k] = weights[all.material[static_cast<std::size_t>(used[static_cast<std::size_t>(k)])]];
-    Moments moments{w.sum(), Eigen::VectorXd::Zero(terms), Eigen::MatrixXd::Zero(terms, terms)};
-    if (count == 0) return moments;
-    const Eigen::MatrixXd x = all.columns(Eigen::all, used).colwise() - centre;
-    moments.sum = x * w;
-    moments.product = x * w.asDiagonal() * x.transpose();
+/// Moments about `centre` of the vectors of each fold: the materials whose number, modulo `folds`,
+/// is that of the fold.
+std::vector<Moments> momentsOf(const VectorSet& all, const std::vector<double>& weights,
+                               const Eigen::VectorXd& centre, std::size_t folds) {
+    const Eigen::Index terms = all.terms();
+    std::vector<Moments> moments(
+        folds, Moments{0, Eigen::VectorXd::Zero(terms), Eigen::MatrixXd::Zero(terms, terms)});
+    std::vector<std::vector<Eigen::Index>> used(folds);
+    all.eachBlock([&](const VectorBlock& block) {
+        for (auto& one : used) one.clear();
+        for (std::size_t v = 0; v < block.material.size(); ++v)
+            used[block.material[v] % folds].push_back(static_cast<Eigen::Index>(v));
+        for (std::size_t fold = 0; fold < folds; ++fold) {
+            if (used[fold].empty()) continue;
+            Eigen::VectorXd w(static_cast<Eigen::Index>(used[fold].size()));
+            for (Eigen::Index k = 0; k < w.size(); ++k)
+                w[k] = weights[block.material[static_cast<std::size_t>(
+                    used[fold][static_cast<std::size_t>(k)])]];
+            const Eigen::MatrixXd x = block.columns(Eigen::all, used[fold]).colwise() - centre;
+            moments[fold].weight += w.sum();
+            moments[fold].sum += x * w;
+            moments[fold].product += x * w.asDiagonal() * x.transpose();
+        }
+    });
     return moments;
 }
 
@@ -101,19 +86,23 @@ Principal principalOf(const Moments& moments, const Eigen::VectorXd& centre, Eig
     return principal;
 }
 
-/// The largest distance of the channels of each material of `fold` from the first components.
-void addDistances(const Vectors& all, const Principal& principal, std::size_t fold,
-                  std::size_t folds, std::vector<double>& distances) {
-    const Eigen::Index few = std::min<Eigen::Index>(static_cast<Eigen::Index>(firstFew),
+/// The largest distance of the channels of each material from the first components of the other
+/// folds, which are those of its own fold in `without`.
+std::vector<double> distancesOf(const VectorSet& all, const std::vector<Principal>& without) {
+    std::vector<double> distances(all.materials(), 0.0);
+    all.eachBlock([&](const VectorBlock& block) {
+        for (Eigen::Index v = 0; v < block.count(); ++v) {
+            const std::size_t material = block.material[static_cast<std::size_t>(v)];
+            const Principal& principal = without[material % without.size()];
+            const auto few = std::min<Eigen::Index>(static_cast<Eigen::Index>(firstFew),
                                                     principal.components.cols() / 4);
-    const auto first = principal.components.leftCols(few);
-    for (Eigen::Index v = 0; v < all.count(); ++v) {
-        const std::size_t material = all.material[static_cast<std::size_t>(v)];
-        if (material % folds != fold) continue;
-        const Eigen::VectorXd centred = all.columns.col(v) - principal.mean;
-        const double rest = (centred - first * (first.transpose() * centred)).norm();
-        distances[material] = std::max(distances[material], rest);
-    }
+            const auto first = principal.components.leftCols(few);
+            const Eigen::VectorXd centred = block.columns.col(v) - principal.mean;
+            const double rest = (centred - first * (first.transpose() * centred)).norm();
+            distances[material] = std::max(distances[material], rest);
+        }
+    });
+    return distances;
 }
 
 struct Robust {
@@ -121,36 +110,42 @@ struct Robust {
     std::vector<double> weights;
 };
 
+Moments sumWithout(const std::vector<Moments>& parts, std::size_t left) {
+    Moments sum{0, Eigen::VectorXd::Zero(parts[0].sum.size()),
+                Eigen::MatrixXd::Zero(parts[0].sum.size(), parts[0].sum.size())};
+    for (std::size_t fold = 0; fold < parts.size(); ++fold) {
+        if (fold == left) continue;
+        sum.weight += parts[fold].weight;
+        sum.sum += parts[fold].sum;
+        sum.product += parts[fold].product;
+    }
+    return sum;
+}
+
+Eigen::VectorXd meanOf(const VectorSet& all) {
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(all.terms());
+    all.eachBlock([&](const VectorBlock& block) { sum += block.columns.rowwise().sum(); });
+    return sum / static_cast<double>(all.count());
+}
+
 /// Components of all, in which materials unlike the others count for less. The distance of a
 /// material is from components of the other folds: its own would take it in.
-Robust robustPrincipal(const Vectors& all, std::size_t materials) {
+Robust robustPrincipal(const VectorSet& all) {
+    const std::size_t materials = all.materials(), folds = std::min(mostFolds, materials);
     Robust robust{{}, std::vector<double>(materials, 1.0)};
-    const std::size_t folds = std::min(mostFolds, materials);
-    const Eigen::VectorXd centre = all.columns.rowwise().mean();
+    const Eigen::VectorXd centre = meanOf(all);
+    std::vector<Eigen::Index> vectors(folds, 0);
+    for (std::size_t m = 0; m < materials; ++m)
+        vectors[m % folds] += static_cast<Eigen::Index>(all.channels(m));
     for (int round = 0;; ++round) {
-        std::vector<Moments> parts;
-        for (std::size_t fold = 0; fold < folds; ++fold)
-            parts.push_back(momentsOf(all, robust.weights, centre,
-                                      [&](std::size_t m) { return m % folds == fold; }));
-        const auto without = [&](std::size_t left) {
-            Moments sum{0, Eigen::VectorXd::Zero(centre.size()),
-                        Eigen::MatrixXd::Zero(centre.size(), centre.size())};
-            for (std::size_t fold = 0; fold < folds; ++fold) {
-                if (fold == left) continue;
-                sum.weight += parts[fold].weight;
-                sum.sum += parts[fold].sum;
-                sum.product += parts[fold].product;
-            }
-            return sum;
-        };
-        robust.principal = principalOf(without(folds), centre, all.count());
+        const std::vector<Moments> parts = momentsOf(all, robust.weights, centre, folds);
+        robust.principal = principalOf(sumWithout(parts, folds), centre, all.count());
         if (round == robustRounds || folds < fewestFolds) return robust;
-        std::vector<double> distances(materials, 0.0);
-        for (std::size_t fold = 0; fold < folds; ++fold) {
-            Eigen::Index others = 0;
-            for (const std::size_t m : all.material) others += m % folds != fold ? 1 : 0;
-            addDistances(all, principalOf(without(fold), centre, others), fold, folds, distances);
-        }
+        std::vector<Principal> without;
+        for (std::size_t fold = 0; fold < folds; ++fold)
+            without.push_back(
+                principalOf(sumWithout(parts, fold), centre, all.count() - vectors[fold]));
+        const std::vector<double> distances = distancesOf(all, without);
         std::vector<double> sorted = distances;
         std::ranges::sort(sorted);
         const double bound = std::max(farAway * sorted[sorted.size() / 2], nearEnough);
@@ -194,37 +189,49 @@ Widths widthsFor(const std::vector<double>& largest, std::size_t budget) {
     return at(static_cast<float>(std::exp2(high)));
 }
 
-/// Largest magnitude of each coordinate over the materials that count.
-std::vector<double> largestOf(const Vectors& all, const Robust& robust, std::size_t components) {
+/// Largest magnitude of each of the first coordinates over the materials that count.
+std::vector<double> largestOf(const VectorSet& all, const Robust& robust, std::size_t components) {
     const auto count = std::min<Eigen::Index>(static_cast<Eigen::Index>(components),
                                               robust.principal.components.cols());
-    const Eigen::MatrixXd a = robust.principal.components.leftCols(count).transpose() *
-                              (all.columns.colwise() - robust.principal.mean);
     std::vector<double> largest(static_cast<std::size_t>(count), 0.0);
-    for (Eigen::Index v = 0; v < a.cols(); ++v) {
-        if (robust.weights[all.material[static_cast<std::size_t>(v)]] < 0.5) continue;
-        for (Eigen::Index k = 0; k < count; ++k)
-            largest[static_cast<std::size_t>(k)] =
-                std::max(largest[static_cast<std::size_t>(k)], std::abs(a(k, v)));
-    }
+    all.eachBlock([&](const VectorBlock& block) {
+        const Eigen::MatrixXd a = robust.principal.components.leftCols(count).transpose() *
+                                  (block.columns.colwise() - robust.principal.mean);
+        for (Eigen::Index v = 0; v < a.cols(); ++v) {
+            if (robust.weights[block.material[static_cast<std::size_t>(v)]] < 0.5) continue;
+            for (Eigen::Index k = 0; k < count; ++k)
+                largest[static_cast<std::size_t>(k)] =
+                    std::max(largest[static_cast<std::size_t>(k)], std::abs(a(k, v)));
+        }
+    });
     return largest;
 }
 
-/// Mean over vectors of the root mean square error after rounding to the widths.
-double storedError(const Vectors& all, const Principal& principal, const Widths& widths) {
-    double sum = 0;
-    for (Eigen::Index v = 0; v < all.count(); ++v) {
-        Eigen::VectorXd rest = all.columns.col(v) - principal.mean;
-        for (std::size_t k = 0; k < widths.bits.size(); ++k) {
-            if (widths.bits[k] == 0) continue;
-            const auto component = principal.components.col(static_cast<Eigen::Index>(k));
-            const double most = std::exp2(widths.bits[k] - 1) - 1;
-            const double q = std::clamp(std::round(component.dot(rest) / widths.step), -most, most);
-            rest -= q * widths.step * component;
-        }
-        sum += rest.norm();
+/// The error of a vector after rounding to the widths.
+double storedError(Eigen::VectorXd rest, const Principal& principal, const Widths& widths) {
+    for (std::size_t k = 0; k < widths.bits.size(); ++k) {
+        if (widths.bits[k] == 0) continue;
+        const auto component = principal.components.col(static_cast<Eigen::Index>(k));
+        const double most = std::exp2(widths.bits[k] - 1) - 1;
+        const double q = std::clamp(std::round(component.dot(rest) / widths.step), -most, most);
+        rest -= q * widths.step * component;
     }
-    return sum / static_cast<double>(all.count());
+    return rest.norm();
+}
+
+/// Mean over vectors of the root mean square error after rounding, for each of several widths.
+std::vector<double> storedErrors(const VectorSet& all, const Principal& principal,
+                                 const std::vector<Widths>& several) {
+    std::vector<double> means(several.size(), 0.0);
+    all.eachBlock([&](const VectorBlock& block) {
+        for (Eigen::Index v = 0; v < block.count(); ++v) {
+            const Eigen::VectorXd centred = block.columns.col(v) - principal.mean;
+            for (std::size_t n = 0; n < several.size(); ++n)
+                means[n] += storedError(centred, principal, several[n]);
+        }
+    });
+    for (double& mean : means) mean /= static_cast<double>(all.count());
+    return means;
 }
 
 std::size_t budgetOf(const LearnOptions& options) {
@@ -266,69 +273,80 @@ Basis basisOf(const LogSpace& space, const Principal& principal, const Widths& w
     return basis;
 }
 
-/// The materials that give the basis of a trial, and those that it is tried on.
+/// The numbers of the materials that give the basis of a trial, and of those it is tried on.
 struct Division {
-    std::vector<Measured> fitted, held;
+    std::vector<std::size_t> fitted, held;
 };
 
-Division divisionOf(std::span<const Measured> materials, double heldOut) {
+Division divisionOf(std::size_t materials, double heldOut) {
     Division division;
     const auto every = static_cast<std::size_t>(std::round(1 / std::max(heldOut, 1e-3)));
-    for (std::size_t m = 0; m < materials.size(); ++m)
-        (every > 0 && m % every == every / 2 ? division.held : division.fitted)
-            .push_back(materials[m]);
+    for (std::size_t m = 0; m < materials; ++m)
+        (every > 0 && m % every == every / 2 ? division.held : division.fitted).push_back(m);
     return division;
 }
 
-/// The mean FLIP of materials in a basis that they took no part in.
-double unseenFlipOf(const LogSpace& space, const Basis& basis, const std::vector<Measured>& held) {
-    const std::size_t step = (held.size() + mostPictures - 1) / mostPictures;
-    std::vector<double> flips(held.size(), 0.0);
+/// The mean FLIP of some of the materials `held` in a basis that they took no part in.
+double unseenFlipOf(const LogSpace& space, const Basis& basis, const MaterialStore& store,
+                    const VectorSet& held) {
+    const std::size_t step = (held.materials() + mostPictures - 1) / mostPictures;
+    std::vector<double> flips((held.materials() + step - 1) / step, 0.0);
     const Encoder encoder(basis, space);
-    eachInParallel(held.size(), [&](std::size_t m) {
-        if (m % step != 0) return;
-        const LogMaterial material = held[m].material();
-        const LogBrdf before(material, held[m].name),
-            after(decode(basis, encoder.encode(material, basis.size())), held[m].name);
-        flips[m] = held[m].error.flip + pictureError(before, after).flip.mean;
+    eachInParallel(flips.size(), [&](std::size_t n) {
+        const Measured measured = store.measured(held.material(n * step));
+        const LogMaterial material = measured.material();
+        const LogBrdf before(material, measured.name),
+            after(decode(basis, encoder.encode(material, basis.size())), measured.name);
+        flips[n] = measured.error.flip + pictureError(before, after).flip.mean;
     });
     double sum = 0;
     for (const double one : flips) sum += one;
-    return sum / static_cast<double>((held.size() + step - 1) / step);
+    return sum / static_cast<double>(flips.size());
 }
 
 /// Trials on the materials that are held out, and their errors in the basis of so many components;
 /// 0 becomes those of the best trial.
-void addTrials(const LogSpace& space, std::span<const Measured> materials,
+void addTrials(const LogSpace& space, const MaterialStore& store, const VectorFile& vectors,
                const LearnOptions& options, bool pictures, std::size_t& components,
                LearnedBasis& learned) {
-    const Division division = divisionOf(materials, options.heldOut);
+    Division division = divisionOf(store.size(), options.heldOut);
     if (division.held.empty() || division.fitted.size() < 2) {
         if (components == 0) components = ladder.back();
         return;
     }
-    const Vectors all = vectorsOf(space, division.fitted), others = vectorsOf(space, division.held);
-    const Robust robust = robustPrincipal(all, division.fitted.size());
+    const VectorSet fitted(vectors, std::move(division.fitted)),
+        held(vectors, std::move(division.held));
+    const Robust robust = robustPrincipal(fitted);
+    const std::vector<double> largest =
+        largestOf(fitted, robust, std::max(ladder.back(), components));
     const auto widthsOf = [&](std::size_t count) {
-        return widthsFor(largestOf(all, robust, count), budgetOf(options));
+        const auto first = static_cast<std::ptrdiff_t>(std::min(count, largest.size()));
+        return widthsFor({largest.begin(), largest.begin() + first}, budgetOf(options));
     };
+    std::vector<Widths> tried;
     for (const std::size_t count : ladder) {
         if (static_cast<Eigen::Index>(count) > robust.principal.components.cols()) break;
-        learned.trials.push_back({count, storedError(others, robust.principal, widthsOf(count))});
+        learned.trials.push_back({.components = count});
+        tried.push_back(widthsOf(count));
     }
+    const std::vector<double> errors = storedErrors(held, robust.principal, tried);
+    for (std::size_t n = 0; n < errors.size(); ++n) learned.trials[n].error = errors[n];
     if (components == 0) components = chosen(learned.trials);
     const Widths widths = widthsOf(components);
-    learned.unseen = storedError(others, robust.principal, widths);
+    learned.unseen = storedErrors(held, robust.principal, {widths})[0];
     if (pictures)
         learned.unseenFlip =
-            unseenFlipOf(space, basisOf(space, robust.principal, widths), division.held);
+            unseenFlipOf(space, basisOf(space, robust.principal, widths), store, held);
 }
 
 }  // namespace
 
-LearnedBasis learnBasis(const LogSpace& space, std::span<const Measured> materials,
+LearnedBasis learnBasis(const LogSpace& space, const MaterialStore& store,
                         const LearnOptions& options, bool pictures) {
-    const Vectors all = vectorsOf(space, materials);
+    const VectorFile vectors(space, store);
+    std::vector<std::size_t> numbers(store.size());
+    std::iota(numbers.begin(), numbers.end(), std::size_t{0});
+    const VectorSet all(vectors, std::move(numbers));
     if (all.count() < 2)
         throw UsageError(fmt::format(
             "a basis is learned from two channels or more that its terms hold, and these materials "
@@ -336,8 +354,8 @@ LearnedBasis learnBasis(const LogSpace& space, std::span<const Measured> materia
             all.count()));
     LearnedBasis learned;
     std::size_t components = options.components;
-    addTrials(space, materials, options, pictures, components, learned);
-    const Robust robust = robustPrincipal(all, materials.size());
+    addTrials(space, store, vectors, options, pictures, components, learned);
+    const Robust robust = robustPrincipal(all);
     const Widths widths = widthsFor(largestOf(all, robust, components), budgetOf(options));
     learned.basis = basisOf(space, robust.principal, widths);
     learned.doubted = static_cast<std::size_t>(

@@ -3,10 +3,11 @@
 #include <hshfit/material_library/basis.h>
 
 #include <cstddef>
-#include <span>
 #include <vector>
 
 namespace hshfit::material_library {
+
+class MaterialStore;
 
 struct LearnOptions {
     std::size_t components = 0;  ///< at most; 0: by the error of materials that take no part
@@ -38,9 +39,11 @@ struct LearnedBasis {
 /// hold all coordinates, a third beyond the largest ones, in the smallest steps. `components` that
 /// are not stated: of a ladder the fewest whose trial is within 3 % of the least.
 /// With `pictures`, FLIP of the materials that took no part is measured too.
-/// The result depends on the order of the materials, and on no number of threads. Throws UsageError
-/// for fewer than two vectors, and for bytes that do not hold one component.
-LearnedBasis learnBasis(const LogSpace& space, std::span<const Measured> materials,
+/// The result depends on the order of the materials, which have to be sorted, and on no number of
+/// threads. Memory holds 50 bytes a material and a block of them; vectors are on a disk, beside the
+/// store. Throws UsageError for fewer than two vectors, and for bytes that do not hold one
+/// component, and OutputError as the store does.
+LearnedBasis learnBasis(const LogSpace& space, const MaterialStore& materials,
                         const LearnOptions& options, bool pictures = false);
 
 }  // namespace hshfit::material_library

@@ -6,6 +6,7 @@
 #include <hshfit/files/checksum.h>
 #include <hshfit/material_library/internal/rounding_errors.h>
 #include <hshfit/material_library/log_terms.h>
+#include <hshfit/material_library/material_store.h>
 #include <hshfit/pictures/picture_error.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/representation/halfway/halfway.h>
@@ -74,47 +75,55 @@ void fallBack(Material& material, const Limits& limits, const Measured& measured
     material.error = errorAgainst(measured, material.polynomial, source, limits.pictures());
 }
 
-/// Materials that go through RoundingErrors together.
-constexpr std::size_t together = 16;
+/// Materials that go through RoundingErrors together, and those that are in memory.
+constexpr std::size_t together = 16, atOnce = 64 * together;
 
-/// The measured materials of a library as it stores them.
-std::vector<Material> storedMaterials(const Library& library, const LogSpace& space,
-                                      const std::vector<Measured>& measured) {
-    std::vector<Material> materials(measured.size());
-    const Encoder encoder(library.basis, space);
-    const RoundingErrors errors(library.basis);
-    eachInParallel((measured.size() + together - 1) / together, [&](std::size_t part) {
-        const std::size_t first = part * together,
-                          last = std::min(first + together, measured.size());
+/// Stores measured materials in a basis.
+class MaterialCoder {
+public:
+    MaterialCoder(const Library& library, const LogSpace& space, const MaterialStore& store)
+        : library_(library),
+          store_(store),
+          encoder_(library.basis, space),
+          errors_(library.basis) {}
+
+    /// The materials `first` to `last` of the store; `first` is a multiple of `together`.
+    std::vector<Material> coded(std::size_t first, std::size_t last) const {
+        std::vector<Material> materials(last - first);
+        eachInParallel((last - first + together - 1) / together, [&](std::size_t part) {
+            const std::size_t from = first + part * together;
+            addCoded(from, std::min(from + together, last), materials.data() + part * together);
+        });
+        return materials;
+    }
+
+private:
+    void addCoded(std::size_t first, std::size_t last, Material* materials) const {
+        std::vector<Measured> measured;
+        for (std::size_t m = first; m < last; ++m) measured.push_back(store_.measured(m));
         std::vector<RoundedMaterial> rounded;
-        for (std::size_t m = first; m < last; ++m) {
-            materials[m] = coded(encoder, measured[m], library.basis.size());
-            rounded.push_back({measured[m], materials[m].codes});
+        for (std::size_t k = 0; k < measured.size(); ++k) {
+            materials[k] = material_library::coded(encoder_, measured[k], library_.basis.size());
+            rounded.push_back({measured[k], materials[k].codes});
         }
-        const std::vector<FormError> found = errors.of(rounded);
-        for (std::size_t m = first; m < last; ++m) {
-            FormError error = found[m - first];
-            if (library.limits.pictures())
-                error.flip = pictureError(LogBrdf(measured[m].material(), measured[m].name),
-                                          LogBrdf(decode(library.basis, materials[m].codes),
-                                                  measured[m].name))
+        const std::vector<FormError> found = errors_.of(rounded);
+        for (std::size_t k = 0; k < measured.size(); ++k) {
+            FormError error = found[k];
+            if (library_.limits.pictures())
+                error.flip = pictureError(LogBrdf(measured[k].material(), measured[k].name),
+                                          LogBrdf(decode(library_.basis, materials[k].codes),
+                                                  measured[k].name))
                                  .flip.mean;
-            materials[m].error = sumOf(measured[m].error, error);
-            fallBack(materials[m], library.limits, measured[m], nullptr);
+            materials[k].error = sumOf(measured[k].error, error);
+            fallBack(materials[k], library_.limits, measured[k], nullptr);
         }
-    });
-    return materials;
-}
+    }
 
-template <class Row>
-void requireUnique(const std::vector<Row>& sorted) {
-    const auto twice = std::ranges::adjacent_find(sorted, {}, &Row::name);
-    if (twice == sorted.end()) return;
-    throw UsageError(
-        fmt::format("two materials are named '{}' ({} and {}): give one of them "
-                    "another name",
-                    twice->name, twice->source, std::next(twice)->source));
-}
+    const Library& library_;
+    const MaterialStore& store_;
+    Encoder encoder_;
+    RoundingErrors errors_;
+};
 
 }  // namespace
 
@@ -169,20 +178,42 @@ Material encode(const Library& library, const LogSpace& space, const Measured& m
     return material;
 }
 
-Library learn(const LogSpace& space, std::vector<Measured> measured, std::vector<Material> own,
-              const LearnOptions& options, const Limits& limits, LearnedBasis* learned) {
-    std::ranges::sort(measured, {}, &Measured::name);
+Library learn(const LogSpace& space, const MaterialStore& store, const LearnOptions& options,
+              const Limits& limits, const std::function<void(Material)>& take,
+              LearnedBasis* learned) {
     Library library{.asked = options, .limits = limits};
-    LearnedBasis basis = learnBasis(space, measured, options, limits.pictures());
+    LearnedBasis basis = learnBasis(space, store, options, limits.pictures());
     library.basis = basis.basis;
     library.unseen = basis.unseen;
     library.unseenFlip = basis.unseenFlip;
-    library.materials = storedMaterials(library, space, measured);
-    std::ranges::move(own, std::back_inserter(library.materials));
-    std::ranges::sort(library.materials, {}, &Material::name);
-    requireUnique(library.materials);
-    library.measured = std::move(measured);
+    const MaterialCoder coder(library, space, store);
+    std::size_t own = 0;
+    for (std::size_t first = 0; first < store.size(); first += atOnce) {
+        const std::size_t last = std::min(first + atOnce, store.size());
+        for (Material& material : coder.coded(first, last)) {
+            for (; own < store.ownForms() && store.ownName(own) < material.name; ++own)
+                take(store.own(own));
+            take(std::move(material));
+        }
+    }
+    for (; own < store.ownForms(); ++own) take(store.own(own));
     if (learned) *learned = std::move(basis);
+    return library;
+}
+
+Library learn(const LogSpace& space, std::vector<Measured> measured, std::vector<Material> own,
+              const LearnOptions& options, const Limits& limits, LearnedBasis* learned) {
+    MaterialStore store(scratchFolder({}));
+    for (const Measured& one : measured) store.add(one);
+    for (const Material& one : own) store.add(one);
+    store.sort();
+    std::vector<Material> materials;
+    Library library = learn(
+        space, store, options, limits,
+        [&](Material material) { materials.push_back(std::move(material)); }, learned);
+    library.materials = std::move(materials);
+    std::ranges::sort(measured, {}, &Measured::name);
+    library.measured = std::move(measured);
     return library;
 }
 

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -64,9 +65,15 @@ std::string checksum(const Basis& basis);
 Material withHalfway(const Brdf& brdf, const std::string& name, const std::string& source,
                      bool seen = false);
 
-/// Learns a basis from the `measured` materials and stores them with it, beside those that have
-/// `own` forms. Names have to be unique (UsageError). The same materials give the same library in
-/// whatever order and parts they came.
+/// Learns a basis from the materials of a store, which is sorted, and hands each material, as the
+/// library stores it, to `take`, in the order of names: also those that have forms of their own.
+/// The same materials give the same bytes in whatever order and parts they came. The answer is the
+/// library without its materials. Memory holds some 100 bytes a material. Throws as learnBasis.
+Library learn(const LogSpace& space, const MaterialStore& store, const LearnOptions& options,
+              const Limits& limits, const std::function<void(Material)>& take,
+              LearnedBasis* learned = nullptr);
+
+/// The same of materials in memory, which are in the answer. Names have to be unique (UsageError).
 Library learn(const LogSpace& space, std::vector<Measured> measured, std::vector<Material> own,
               const LearnOptions& options, const Limits& limits, LearnedBasis* learned = nullptr);
 

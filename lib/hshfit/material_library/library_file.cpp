@@ -4,16 +4,16 @@
 #include <hshfit/files/json_fields.h>
 #include <hshfit/files/mapped_file.h>
 #include <hshfit/files/tensor_file.h>
-#include <hshfit/files/tensor_file_writer.h>
+#include <hshfit/material_library/internal/library_format.h>
 #include <hshfit/material_library/internal/log_samples.h>
 #include <hshfit/material_library/log_terms.h>
-#include <hshfit/version.h>
 #include <hshfit/wording.h>
 
 #include <Imath/half.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -22,20 +22,14 @@ namespace hshfit::material_library {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::json;
 using Field = TensorFile::Field;
 
-constexpr const char* format = "hshfit-library";
-constexpr int newest = 1, deepestJson = 6;
+constexpr int deepestJson = 6;
 constexpr std::size_t mostComponents = 512, mostHead = std::size_t{1} << 28;
 constexpr std::size_t mostHalfway = std::size_t{1} << 22;
+constexpr std::size_t rowsWithoutRelease = 4096;
 constexpr double highestTop = 60;  ///< e^60 is beyond every BRDF, and its square is finite
-
-Json errorJson(const FormError& error) {
-    return {{"mean_log", error.meanLog},       {"log", error.logError},
-            {"relative_l2", error.relativeL2}, {"maximum", error.maximum},
-            {"largest", error.largest},        {"flip", error.flip}};
-}
 
 FormError readError(const JsonFields& fields) {
     const auto value = [&](const char* key) { return fields.number(key, 0, largestNumber); };
@@ -43,85 +37,9 @@ FormError readError(const JsonFields& fields) {
             value("maximum"),  value("largest"), value("flip")};
 }
 
-Json limitsJson(const Limits& limits) {
-    return {{"log", limits.log}, {"maximum", limits.maximum}, {"flip", limits.flip}};
-}
-
 Limits readLimits(const JsonFields& fields) {
     const auto value = [&](const char* key) { return fields.number(key, 0, greatestLimit); };
     return {value("log"), value("maximum"), value("flip")};
-}
-
-std::string headOf(const Library& library) {
-    Json materials = Json::array(), measured = Json::array();
-    for (const Material& m : library.materials) {
-        Json row = {{"name", m.name},         {"source", m.source}, {"kind", nameOf(m.kind)},
-                    {"channels", m.channels}, {"bytes", m.bytes},   {"error", errorJson(m.error)}};
-        if (m.kind == Kind::halfway) row["length"] = m.halfway.size();
-        if (!m.fallback.empty()) row["fallback"] = m.fallback;
-        materials.push_back(std::move(row));
-    }
-    for (const Measured& m : library.measured)
-        measured.push_back({{"name", m.name},
-                            {"source", m.source},
-                            {"channels", m.channels()},
-                            {"error", errorJson(m.error)}});
-    Json head = {{"format", format},
-                 {"version", newest},
-                 {"generator", fmt::format("hshfit {}", version)},
-                 {"terms", logTerms().size()},
-                 {"step", library.basis.step},
-                 {"limit", limitsJson(library.limits)},
-                 {"unseen", {{"log", library.unseen}, {"flip", library.unseenFlip}}},
-                 {"asked",
-                  {{"components", library.asked.components},
-                   {"bytes", library.asked.bytes},
-                   {"held_out", library.asked.heldOut}}},
-                 {"materials", std::move(materials)}};
-    if (!library.basisFile.empty())
-        head["basis"] = {{"file", library.basisFile}, {"sha256", library.basisSum}};
-    if (!library.measured.empty()) head["measured"] = std::move(measured);
-    return jsonText(head);
-}
-
-std::vector<float> asFloats(const std::vector<double>& values) {
-    return {values.begin(), values.end()};
-}
-
-std::vector<std::uint16_t> asHalves(const std::vector<double>& values) {
-    std::vector<std::uint16_t> halves;
-    halves.reserve(values.size());
-    for (const double value : values)
-        halves.push_back(Imath::half(static_cast<float>(value)).bits());
-    return halves;
-}
-
-/// Arrays of all materials one after another.
-struct Joined {
-    std::string codes, halfway;
-    std::vector<double> polynomials, polynomialTops;
-    std::vector<float> exponents, tops, rests;
-};
-
-Joined joinedOf(const Library& library) {
-    Joined all;
-    for (const Material& m : library.materials) {
-        all.codes.append(m.codes.begin(), m.codes.end());
-        all.halfway += m.halfway;
-        if (m.kind != Kind::polynomial) continue;
-        all.polynomials.insert(all.polynomials.end(), m.polynomial.exponents.begin(),
-                               m.polynomial.exponents.end());
-        all.polynomialTops.insert(all.polynomialTops.end(), m.polynomial.tops.begin(),
-                                  m.polynomial.tops.end());
-    }
-    for (const Measured& m : library.measured) {
-        all.exponents.insert(all.exponents.end(), m.exponents.begin(), m.exponents.end());
-        all.tops.insert(all.tops.end(), m.tops.begin(), m.tops.end());
-        all.rests.insert(all.rests.end(), m.rest.begin(), m.rest.end());
-    }
-    // Of files that did not say it the rest is not known.
-    if (all.rests.size() != library.measured.size() * restRows) all.rests.clear();
-    return all;
 }
 
 /// The fields of a file, with checks of their sizes and values.
@@ -131,7 +49,7 @@ public:
         : file_(bytes, name), name_(name) {}
 
     const std::string& name() const { return name_; }
-    std::string head() const {
+    std::string_view head() const {
         const Field& field = file_.field(headField);
         if (field.type != TensorFile::Type::u8 || field.count > mostHead)
             file_.fail(field, fmt::format("has to be at most {} bytes of JSON", mostHead));
@@ -139,24 +57,13 @@ public:
         return {reinterpret_cast<const char*>(octets.data()), octets.size()};
     }
     bool has(const char* key) const { return file_.find(key) != nullptr; }
-    /// `count` bytes; a field of none may be absent.
-    std::span<const unsigned char> octets(const char* key, std::size_t count) const {
-        if (count == 0) return {};
-        const Field& field = file_.field(key);
-        if (field.type != TensorFile::Type::u8 || field.count != count)
-            file_.fail(field, fmt::format("has {} values of type {}, expected {} of type u8",
-                                          field.count, typeName(field.type), count));
-        return file_.octets(field);
-    }
     std::vector<float> floats(const char* key, std::size_t count) const {
-        if (count == 0) return {};
         const Field& field = file_.field(key);
         if (field.count != count)
             file_.fail(field, fmt::format("has {} values, expected {}", field.count, count));
         return file_.floats(field, field.shape.size());
     }
     std::vector<double> halves(const char* key, std::size_t count) const {
-        if (count == 0) return {};
         const Field& field = file_.field(key);
         if (field.type != TensorFile::Type::f16 || field.count != count)
             file_.fail(field, fmt::format("has {} values of type {}, expected {} of type f16",
@@ -178,24 +85,75 @@ public:
         if (field.count > mostComponents)
             file_.fail(field,
                        fmt::format("has {} components, more than {}", field.count, mostComponents));
-        const auto raw = octets("widths", field.count);
+        const auto raw = file_.octets(field);
         for (const unsigned char width : raw)
             if (width < 2 || width > 16)
                 file_.fail(field, fmt::format("has a width of {} bits, expected 2 to 16", width));
         return {raw.begin(), raw.end()};
     }
-    void requireTops(const std::vector<float>& tops, const char* key) const {
-        for (const float top : tops)
-            if (top > highestTop) fail(key, fmt::format("has {}, more than {}", top, highestTop));
-    }
-    [[noreturn]] void fail(const char* key, const std::string& reason) const {
-        file_.fail(file_.field(key), reason);
-    }
+    const TensorFile& file() const { return file_; }
 
 private:
     TensorFile file_;
     const std::string& name_;
 };
+
+/// A field with numbers of all materials, one after another, as they are taken. A field of none may
+/// be absent.
+template <class Number>
+class Sequence {
+public:
+    Sequence(const TensorFile& file, const char* key, TensorFile::Type type)
+        : file_(file), key_(key), type_(type) {}
+
+    /// The next `count` numbers, each of which `isValid`.
+    template <class List, class Valid>
+    void take(std::size_t count, List& list, const Valid& isValid) {
+        if (count == 0) return;
+        const Field& field = file_.field(key_);
+        if (field.type != type_)
+            file_.fail(field, fmt::format("has values of type {}, expected {}",
+                                          typeName(field.type), typeName(type_)));
+        if (field.count - taken_ < count)
+            file_.fail(field, fmt::format("has {} values, fewer than its materials", field.count));
+        list.resize(count);
+        std::memcpy(list.data(), file_.raw(field).data() + taken_ * sizeof(Number),
+                    count * sizeof(Number));
+        for (std::size_t n = 0; n < count; ++n)
+            if (!isValid(list[n]))
+                file_.fail(field, fmt::format("value {} is {}", taken_ + n, list[n]));
+        taken_ += count;
+    }
+    /// Throws where the field has more.
+    void requireEnd() const {
+        if (taken_ == 0) return;
+        const Field& field = file_.field(key_);
+        if (field.count != taken_)
+            file_.fail(field, fmt::format("has {} values, expected {}", field.count, taken_));
+    }
+
+private:
+    const TensorFile& file_;
+    const char* key_;
+    TensorFile::Type type_;
+    std::uint64_t taken_ = 0;
+};
+
+bool isNumber(float value) {
+    return std::isfinite(value);
+}
+
+bool isTop(float value) {
+    return std::isfinite(value) && value <= highestTop;
+}
+
+bool isSquare(float value) {
+    return std::isfinite(value) && value >= 0;
+}
+
+bool isOctet(unsigned char) {
+    return true;
+}
 
 Basis readBasis(const Reader& reader, const JsonFields& root) {
     Basis basis;
@@ -204,7 +162,8 @@ Basis readBasis(const Reader& reader, const JsonFields& root) {
     basis.step = static_cast<float>(root.number("step", 1e-12, 1e6));
     const std::vector<float> mean = reader.floats("mean", logTerms().size());
     basis.mean.assign(mean.begin(), mean.end());
-    basis.components = reader.halves("components", basis.size() * logTerms().size());
+    if (basis.size() > 0)
+        basis.components = reader.halves("components", basis.size() * logTerms().size());
     return basis;
 }
 
@@ -221,144 +180,139 @@ Kind readKind(const JsonFields& row) {
     row.fail(fmt::format("is '{}', expected coded, polynomial or halfway", word), "kind");
 }
 
-std::string readName(const JsonFields& row, const std::string& before) {
+/// The name of a row; `last` is the name of the row before, and becomes this one.
+std::string readName(const JsonFields& row, std::string& last) {
     const std::string name = row.word("name");
     try {
         requireName(name);
     } catch (const UsageError& error) {
         row.fail(error.what(), "name");
     }
-    if (name <= before) row.fail(fmt::format("is '{}' after '{}'", name, before), "name");
+    if (name <= last) row.fail(fmt::format("is '{}' after '{}'", name, last), "name");
+    last = name;
     return name;
 }
 
-/// The rows without their arrays.
-std::vector<Material> readRows(const JsonFields& root, const Basis& basis) {
-    std::vector<Material> materials;
-    for (const JsonFields& row : root.objects("materials")) {
-        const std::string before = materials.empty() ? "" : materials.back().name;
-        Material m{.name = readName(row, before),
+/// The materials of a library, row by row.
+class MaterialRows {
+public:
+    MaterialRows(const Reader& reader, const Basis& basis) : basis_(basis), reader_(reader) {}
+
+    Material next(const JsonFields& row) {
+        Material m{.name = readName(row, last_),
                    .source = row.word("source"),
                    .kind = readKind(row),
                    .channels = readChannels(row),
                    .bytes = static_cast<std::size_t>(row.integer("bytes", 0, 1 << 30))};
         m.error = readError(row.object("error"));
         if (row.has("fallback")) m.fallback = row.word("fallback");
-        if (m.kind == Kind::coded && basis.mean.empty())
-            row.fail("is coded, in a file without a basis", "kind");
-        if (m.kind == Kind::coded) m.codes.resize(m.channels * basis.channelBytes());
-        if (m.kind == Kind::polynomial) m.polynomial.tops.resize(m.channels);
-        if (m.kind == Kind::halfway)
-            m.halfway.resize(
-                static_cast<std::size_t>(row.integer("length", 2, static_cast<int>(mostHalfway))));
-        materials.push_back(std::move(m));
+        switch (m.kind) {
+            case Kind::coded:
+                if (basis_.mean.empty()) row.fail("is coded, in a file without a basis", "kind");
+                codes_.take(m.channels * basis_.channelBytes(), m.codes, isOctet);
+                break;
+            case Kind::polynomial:
+                m.polynomial = nextPolynomial(m.channels);
+                break;
+            case Kind::halfway:
+                halfway_.take(static_cast<std::size_t>(
+                                  row.integer("length", 2, static_cast<int>(mostHalfway))),
+                              m.halfway, isOctet);
+                break;
+        }
+        return m;
     }
-    return materials;
-}
+    void requireEnd() const {
+        codes_.requireEnd();
+        halfway_.requireEnd();
+        polynomials_.requireEnd();
+        tops_.requireEnd();
+    }
 
-void fill(std::vector<Material>& materials, const Reader& reader) {
-    std::size_t codes = 0, channels = 0, text = 0;
-    for (const Material& m : materials) {
-        codes += m.codes.size();
-        channels += m.polynomial.tops.size();
-        text += m.halfway.size();
+private:
+    LogMaterial nextPolynomial(std::size_t channels) {
+        std::vector<float> exponents, tops;
+        polynomials_.take(channels * logTerms().size(), exponents, isNumber);
+        tops_.take(channels, tops, isTop);
+        return {{exponents.begin(), exponents.end()}, {tops.begin(), tops.end()}};
     }
-    const std::size_t terms = logTerms().size();
-    const auto allCodes = reader.octets("codes", codes), allText = reader.octets("halfway", text);
-    const std::vector<float> polynomials = reader.floats("polynomials", channels * terms);
-    const std::vector<float> tops = reader.floats("polynomial_tops", channels);
-    reader.requireTops(tops, "polynomial_tops");
-    codes = channels = text = 0;
-    for (Material& m : materials) {
-        std::copy_n(allCodes.begin() + static_cast<std::ptrdiff_t>(codes), m.codes.size(),
-                    m.codes.begin());
-        std::copy_n(allText.begin() + static_cast<std::ptrdiff_t>(text), m.halfway.size(),
-                    m.halfway.begin());
-        const std::size_t count = m.polynomial.tops.size();
-        m.polynomial.exponents.assign(
-            polynomials.begin() + static_cast<std::ptrdiff_t>(channels * terms),
-            polynomials.begin() + static_cast<std::ptrdiff_t>((channels + count) * terms));
-        std::copy_n(tops.begin() + static_cast<std::ptrdiff_t>(channels), count,
-                    m.polynomial.tops.begin());
-        codes += m.codes.size();
-        text += m.halfway.size();
-        channels += count;
-    }
-}
 
-std::vector<Measured> readMeasured(const JsonFields& root, const Reader& reader) {
-    std::vector<Measured> all;
-    if (!root.has("measured")) return all;
-    std::size_t channels = 0;
-    for (const JsonFields& row : root.objects("measured")) {
-        Measured m{.name = readName(row, all.empty() ? "" : all.back().name),
+    const Basis& basis_;
+    const Reader& reader_;
+    std::string last_;
+    Sequence<unsigned char> codes_{reader_.file(), "codes", TensorFile::Type::u8},
+        halfway_{reader_.file(), "halfway", TensorFile::Type::u8};
+    Sequence<float> polynomials_{reader_.file(), "polynomials", TensorFile::Type::f32},
+        tops_{reader_.file(), "polynomial_tops", TensorFile::Type::f32};
+};
+
+/// The materials that learning again needs, row by row.
+class MeasuredRows {
+public:
+    explicit MeasuredRows(const Reader& reader) : reader_(reader) {}
+
+    Measured next(const JsonFields& row) {
+        Measured m{.name = readName(row, last_),
                    .source = row.word("source"),
                    .exponents = {},
-                   .tops = std::vector<float>(readChannels(row)),
+                   .tops = {},
                    .error = readError(row.object("error"))};
-        channels += m.channels();
-        all.push_back(std::move(m));
+        const std::size_t channels = readChannels(row);
+        exponents_.take(channels * logTerms().size(), m.exponents, isNumber);
+        tops_.take(channels, m.tops, isTop);
+        if (hasRests_) rests_.take(restRows, m.rest, isSquare);
+        return m;
     }
-    const std::size_t terms = logTerms().size();
-    const std::vector<float> exponents = reader.floats("exponents", channels * terms),
-                             tops = reader.floats("tops", channels),
-                             rests = reader.floats("rests",
-                                                   reader.has("rests") ? all.size() * restRows : 0);
-    reader.requireTops(tops, "tops");
-    for (const float rest : rests)
-        if (rest < 0) reader.fail("rests", fmt::format("has {}, expected 0 or more", rest));
-    for (std::size_t n = 0; n < rests.size(); ++n) all[n / restRows].rest.push_back(rests[n]);
-    channels = 0;
-    for (Measured& m : all) {
-        const auto first = static_cast<std::ptrdiff_t>(channels);
-        std::copy_n(tops.begin() + first, m.channels(), m.tops.begin());
-        channels += m.channels();
-        m.exponents.assign(exponents.begin() + first * static_cast<std::ptrdiff_t>(terms),
-                           exponents.begin() + static_cast<std::ptrdiff_t>(channels * terms));
+    void requireEnd() const {
+        exponents_.requireEnd();
+        tops_.requireEnd();
+        rests_.requireEnd();
     }
-    return all;
+
+private:
+    const Reader& reader_;
+    std::string last_;
+    bool hasRests_ = reader_.has("rests");
+    Sequence<float> exponents_{reader_.file(), "exponents", TensorFile::Type::f32},
+        tops_{reader_.file(), "tops", TensorFile::Type::f32},
+        rests_{reader_.file(), "rests", TensorFile::Type::f32};
+};
+
+/// The arrays of a head whose elements are one material each.
+constexpr std::array<std::string_view, 2> rowArrays{"materials", "measured"};
+
+/// Calls `call(array, row)` for each row, and leaves the arrays of the head empty: a tree of all
+/// rows takes kilobytes a material.
+Json parseHead(std::string_view text, const std::string& name,
+               const std::function<void(std::string_view array, const JsonFields& row)>& call) {
+    std::string key;
+    bool inRows = false;
+    std::size_t count = 0;
+    return parseJson(text, name, deepestJson, [&](int depth, Json::parse_event_t event, Json& at) {
+        using Event = Json::parse_event_t;
+        if (depth == 1) {
+            if (event == Event::key) key = at.get<std::string>();
+            inRows = event == Event::array_start && std::ranges::count(rowArrays, key) > 0;
+            count = 0;
+        }
+        const bool ends =
+            event == Event::object_end || event == Event::array_end || event == Event::value;
+        if (!inRows || depth != 2 || !ends) return true;
+        if (call) call(key, JsonFields(at, fmt::format("{}[{}]", key, count), name));
+        ++count;
+        return false;
+    });
 }
 
-}  // namespace
-
-void writeLibrary(const Library& library, AtomicFile& file) {
-    const std::string head = headOf(library);
-    const Joined all = joinedOf(library);
-    const std::uint64_t terms = logTerms().size();
-    const std::vector<float> mean = asFloats(library.basis.mean),
-                             polynomials = asFloats(all.polynomials),
-                             polynomialTops = asFloats(all.polynomialTops);
-    const std::vector<std::uint16_t> components = asHalves(library.basis.components);
-    TensorFileWriter writer;
-    writer.add(headField, head);
-    const std::string widths(library.basis.widths.begin(), library.basis.widths.end());
-    if (library.basisFile.empty() && !library.basis.mean.empty()) {
-        writer.add("mean", {terms}, mean);
-        writer.add("components", TensorFile::Type::f16, {library.basis.size(), terms},
-                   std::as_bytes(std::span(components)));
-        writer.add("widths", widths);
-    }
-    if (!all.codes.empty()) writer.add("codes", all.codes);
-    if (!all.halfway.empty()) writer.add("halfway", all.halfway);
-    if (!polynomials.empty()) {
-        writer.add("polynomials", {polynomialTops.size(), terms}, polynomials);
-        writer.add("polynomial_tops", {polynomialTops.size()}, polynomialTops);
-    }
-    if (!all.tops.empty()) {
-        writer.add("exponents", {all.tops.size(), terms}, all.exponents);
-        writer.add("tops", {all.tops.size()}, all.tops);
-    }
-    if (!all.rests.empty()) writer.add("rests", {library.measured.size(), restRows}, all.rests);
-    writer.write(file);
-}
-
-Library parseLibrary(std::span<const unsigned char> bytes, const std::string& name,
-                     const std::function<Basis(const std::string& file)>& basisOf) {
-    const Reader reader(bytes, name);
-    const nlohmann::json document = parseJson(reader.head(), name, deepestJson);
+/// Reads a library and hands its materials on.
+Library parse(const Reader& reader, const std::string& name, const BasisOf& basisOf,
+              const LibraryCalls& calls) {
+    // The basis that codes need may be named behind them.
+    const Json document = parseHead(reader.head(), name, {});
     const JsonFields root(document, "", name);
-    if (root.word("format") != format) root.fail(fmt::format("is not '{}'", format), "format");
-    root.integer("version", 1, newest);
+    if (root.word("format") != libraryFormat)
+        root.fail(fmt::format("is not '{}'", libraryFormat), "format");
+    root.integer("version", 1, newestLibrary);
     const int terms = static_cast<int>(logTerms().size());
     root.integer("terms", terms, terms);
     const JsonFields unseen = root.object("unseen");
@@ -383,19 +337,57 @@ Library parseLibrary(std::span<const unsigned char> bytes, const std::string& na
     } else {
         library.basis = readBasis(reader, root);
     }
-    library.materials = readRows(root, library.basis);
-    fill(library.materials, reader);
-    library.measured = readMeasured(root, reader);
+    root.objects("materials");  // throws for what is no array
+    if (root.has("measured")) root.objects("measured");
+    MaterialRows materials(reader, library.basis);
+    MeasuredRows measured(reader);
+    parseHead(reader.head(), name, [&](std::string_view array, const JsonFields& row) {
+        if (array == "materials")
+            calls.material(materials.next(row));
+        else
+            calls.measured(measured.next(row));
+    });
+    materials.requireEnd();
+    measured.requireEnd();
     return library;
 }
 
+/// The calls that keep all materials.
+struct Kept {
+    std::vector<Material> materials;
+    std::vector<Measured> measured;
+
+    LibraryCalls calls() {
+        return {[this](Material m) { materials.push_back(std::move(m)); },
+                [this](Measured m) { measured.push_back(std::move(m)); }};
+    }
+    Library in(Library library) {
+        library.materials = std::move(materials);
+        library.measured = std::move(measured);
+        return library;
+    }
+};
+
+}  // namespace
+
+Library parseLibrary(std::span<const unsigned char> bytes, const std::string& name,
+                     const BasisOf& basisOf) {
+    Kept kept;
+    return kept.in(parse(Reader(bytes, name), name, basisOf, kept.calls()));
+}
+
 Library readLibrary(const std::string& path) {
+    Kept kept;
+    return kept.in(readLibrary(path, kept.calls()));
+}
+
+Library readLibrary(const std::string& path, const LibraryCalls& calls) {
     const MappedFile file(path);
     const auto basisOf = [&](const std::string& other) {
         const std::string there = (fs::path(path).parent_path() / other).string();
         const MappedFile from(there);
         const Reader reader(from.bytes(), there);
-        const nlohmann::json document = parseJson(reader.head(), there, deepestJson);
+        const Json document = parseHead(reader.head(), there, {});
         const JsonFields root(document, "", there);
         if (root.has("basis")) root.fail("names a third file", "basis");
         return readBasis(reader, root);
@@ -403,8 +395,15 @@ Library readLibrary(const std::string& path) {
     if (!looksLikeLibrary(file.bytes().first(std::min<std::size_t>(file.size(), 64))))
         throw InputError(
             fmt::format("{}: is no library of materials; {} makes one", path, Call{"learn"}));
+    // Pages that were read would stay in memory until the end.
+    std::size_t count = 0;
+    const auto next = [&] {
+        if (++count % rowsWithoutRelease == 0) file.releasePages();
+    };
+    const LibraryCalls releasing{[&](Material m) { calls.material(std::move(m)), next(); },
+                                 [&](Measured m) { calls.measured(std::move(m)), next(); }};
     try {
-        Library library = parseLibrary(file.bytes(), path, basisOf);
+        Library library = parse(Reader(file.bytes(), path), path, basisOf, releasing);
         file.checkIntact();
         return library;
     } catch (const InputError&) {

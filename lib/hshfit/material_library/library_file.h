@@ -30,8 +30,20 @@ void writeLibrary(const Library& library, AtomicFile& file);
 /// folder of this one, and has to have the checksum that this one states.
 Library readLibrary(const std::string& path);
 
-/// The same from memory; `basisOf` reads the basis of another file.
+/// Take the materials of a library, in the order of their names each.
+struct LibraryCalls {
+    std::function<void(Material)> material;
+    std::function<void(Measured)> measured;
+};
+/// The same for libraries that are larger than memory: the materials go to `calls`, some of them
+/// before a mistake in the file is found, and the answer has none.
+Library readLibrary(const std::string& path, const LibraryCalls& calls);
+
+/// Reads the basis of another file.
+using BasisOf = std::function<Basis(const std::string& file)>;
+
+/// The library from memory.
 Library parseLibrary(std::span<const unsigned char> bytes, const std::string& name,
-                     const std::function<Basis(const std::string& file)>& basisOf);
+                     const BasisOf& basisOf);
 
 }  // namespace hshfit::material_library

@@ -8,6 +8,8 @@
 #include <sys/stat.h>
 #include <temporary_file.h>
 
+#include <algorithm>
+#include <fstream>
 #include <memory>
 #include <numeric>
 #include <string>
@@ -26,6 +28,28 @@ TEST(MappedFile, holdsTheBytesOfTheFile) {
     const TemporaryFile file("tensor");
     const MappedFile map(file.path());
     EXPECT_EQ(std::string(map.bytes().begin(), map.bytes().end()), "tensor");
+    EXPECT_NO_THROW(map.checkIntact());
+}
+
+/// Kilobytes of files that are in the memory of this process.
+long residentKilobytes() {
+    std::ifstream status("/proc/self/status");
+    std::string word;
+    long value = -1;
+    while (status >> word)
+        if (word == "RssFile:") status >> value;
+    return value;
+}
+
+TEST(MappedFile, pagesThatWereLetGoAreReadAgain) {
+    const std::string text(std::size_t{1} << 24, 'x');
+    const TemporaryFile file(text);
+    const MappedFile map(file.path());
+    EXPECT_TRUE(std::equal(text.begin(), text.end(), map.data()));
+    const long before = residentKilobytes();
+    map.releasePages();
+    EXPECT_LT(residentKilobytes(), before - 15000);
+    EXPECT_TRUE(std::equal(text.begin(), text.end(), map.data()));
     EXPECT_NO_THROW(map.checkIntact());
 }
 

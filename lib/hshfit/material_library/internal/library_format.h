@@ -1,0 +1,11 @@
+#pragma once
+
+#include <cstddef>
+
+namespace hshfit::material_library {
+
+/// "format" of the head of a library, and the newest version that is read and written.
+inline constexpr const char* libraryFormat = "hshfit-library";
+inline constexpr int newestLibrary = 1;
+
+}  // namespace hshfit::material_library
