@@ -281,6 +281,8 @@ void runExport(const LibraryArguments& arguments, const Globals& globals) {
         document["components"] = exported.components;
         document["bytes"] = exported.bytes;
         document["table"] = exported.table ? jobs::tableJson(*exported.table) : Json(nullptr);
+        document["sampling"] =
+            exported.sampling ? jobs::samplingJson(*exported.sampling) : Json(nullptr);
         document["files"] = files;
         return printJson(document);
     }
@@ -294,6 +296,15 @@ void runExport(const LibraryArguments& arguments, const Globals& globals) {
             "{:.3g} in the mean; FLIP {:.3g}, of {} {:.3g}\n",
             table.size.half, table.size.plane, table.size.horizon, table.bytes, table.error.largest,
             table.error.mean, table.flip, table.material, table.largestFlip);
+    }
+    if (exported.sampling) {
+        text += fmt::format(
+            "  proposals of {} elevations; variance of f cos / pdf over its mean squared, the "
+            "median of materials:\n",
+            exported.sampling->rows);
+        for (const jobs::ExportedSampling::Row& row : exported.sampling->efficiency)
+            text += fmt::format("  {:>3} degrees {:.2g}, of the cosine {:.2g}\n", row.theta,
+                                row.variance, row.cosine);
     }
     if (!exported.leftOut.empty())
         text += fmt::format("  left out, with forms of their own: {}\n",

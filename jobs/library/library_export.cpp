@@ -1,5 +1,7 @@
 #include "library_export.h"
 
+#include "library_sampling.h"
+
 #include <jobs/exports/export_three.h>
 
 #include <hshfit/each_in_parallel.h>
@@ -9,10 +11,12 @@
 #include <hshfit/gpu/containers/sidecar.h>
 #include <hshfit/gpu/containers/targets.h>
 #include <hshfit/gpu/forms/library_shader.h>
+#include <hshfit/gpu/proposals/proposal_shader.h>
 #include <hshfit/material_library/library_file.h>
 #include <hshfit/material_library/log_terms.h>
 #include <hshfit/material_library/shared_functions.h>
 #include <hshfit/pictures/picture_error.h>
+#include <hshfit/sampling/efficiency.h>
 #include <hshfit/version.h>
 
 #include <fmt/format.h>
@@ -112,6 +116,40 @@ Json testsOf(const ml::Library& library, const ExportedLibrary& exported,
     return tests;
 }
 
+/// Directions of the first materials, drawn by the library, with their densities.
+Json samplesOf(const std::vector<Proposal>& proposals) {
+    Json samples = Json::array();
+    UniformNumbers numbers(1);
+    for (std::size_t n = 0; n < std::min(testedMaterials, proposals.size()); ++n) {
+        const auto sampler = proposalSampler(proposals[n]);
+        for (const double theta : {0., 45., 80.}) {
+            const Direction wo = directionFromAngles(radians(theta), 1);
+            const Uniforms u = numbers.next();
+            const Sample sample = sampler->sample(wo, u);
+            samples.push_back({{"material", n},
+                               {"wo", array(wo)},
+                               {"u", {u[0], u[1], u[2]}},
+                               {"wi", array(sample.wi)},
+                               {"pdf", sample.pdf}});
+        }
+    }
+    return samples;
+}
+
+Json proposalJson(const ExportedSampling& sampling) {
+    Json all = samplingJson(sampling);
+    all["density"] =
+        "(1 - share_0 - share_1) cos / pi + sum_k share_k ggx_k(wo, wi), visible normals of GGX "
+        "folded at the horizon";
+    all["texel"] = "share_0, width_0, share_1, width_1 (+ 256: a retro lobe)";
+    all["share"] = "code / 255";
+    all["width"] = "1e-4 * 20000^(code / 255)";
+    all["place"] =
+        "s rows - 1/2, clamped, s = 1 - sqrt(1 - tan(theta_o / 2)); shares and widths "
+        "are interpolated";
+    return all;
+}
+
 Json sidecarOf(const std::string& path, const ml::Library& library, const gpu::Texels& texels,
                const gpu::SharedSums& sums, const ExportedLibrary& exported,
                std::span<const gpu::ExportedFile> files) {
@@ -141,6 +179,7 @@ Json sidecarOf(const std::string& path, const ml::Library& library, const gpu::T
             {"frame", Json::parse(gpu::frameText())},
             {"components", exported.components},
             {"texels_per_material", exported.bytes / 8},
+            {"proposals", exported.sampling ? proposalJson(*exported.sampling) : Json(nullptr)},
             {"materials", materials},
             {"left_out", exported.leftOut},
             {"table", table},
@@ -192,9 +231,9 @@ bool wantsThree(std::span<const gpu::Target* const> targets, const LibraryExport
 }
 
 /// The files of three.js.
-void addThree(const ml::Library& library, const gpu::SharedSums& sums,
-              const LibraryExportOptions& options, const Listener& listener, FileSet& files,
-              ExportedLibrary& exported) {
+void addThree(const ml::Library& library, gpu::SharedSums sums, const LibraryExportOptions& options,
+              const Listener& listener, FileSet& files, ExportedLibrary& exported) {
+    sums.further = 0;  // three.js draws no samples
     const gpu::ThreeOptions three{
         .name = exported.name,
         .shader = {.prefix = options.prefix},
@@ -243,8 +282,17 @@ ExportedLibrary exportLibrary(const std::string& path, const std::string& folder
         exported.table = tableOf(library, exported, tabled);
         sums = std::move(tabled.sums);
     }
+    std::vector<Proposal> proposals;
+    if (options.sampling > 0) {
+        LibraryProposals made = addProposals(
+            sums, options.sampling,
+            [&](std::size_t n) { return brdfOf(library, exported, sums, n); },
+            listener.part("sampling"));
+        proposals = std::move(made.proposals);
+        exported.sampling = std::move(made.sampling);
+    }
     const gpu::Texels texels = gpu::materialTexels(sums);
-    exported.bytes = sums.stride() * 4 * gpu::numberBytes(texels.number);
+    exported.bytes = sums.width() * 4 * gpu::numberBytes(texels.number);
 
     // All of them hold halves.
     std::vector<const gpu::Container*> containers;
@@ -252,7 +300,7 @@ ExportedLibrary exportLibrary(const std::string& path, const std::string& folder
         if (target->kind == gpu::Target::Kind::container)
             containers.push_back(&gpu::findContainer(target->name));
     FileSet files(folder, options.force);
-    const Json tests = testsOf(library, exported, sums);
+    const Json tests = testsOf(library, exported, sums), samples = samplesOf(proposals);
     exported.textures = gpu::writeTexels(
         {.sets = setsOf(texels, sums),
          .facts = {{"form", "library"},
@@ -262,6 +310,7 @@ ExportedLibrary exportLibrary(const std::string& path, const std::string& folder
              [&](std::span<const gpu::ExportedFile> written, std::optional<gpu::Role>) {
                  Json sidecar = sidecarOf(path, library, texels, sums, exported, written);
                  sidecar["tests"] = tests;
+                 if (exported.sampling) sidecar["samples"] = samples;
                  return gpu::readableSidecar(jsonText(sidecar));
              },
          .tests = gpu::readableSidecar(jsonText(
@@ -270,10 +319,14 @@ ExportedLibrary exportLibrary(const std::string& path, const std::string& folder
     for (const gpu::LanguageEntry& language : gpu::languages()) {
         if (!holds(targets, language.name)) continue;
         const std::string file = gpu::shaderFileName(exported.name, language, options.prefix);
-        files.write(file,
-                    gpu::fileText(language.language,
-                                  gpu::libraryShaderSource(language.language, sums, options.prefix),
-                                  std::filesystem::path(file).stem().string()));
+        std::string source = gpu::libraryShaderSource(language.language, sums, options.prefix);
+        if (exported.sampling)
+            source +=
+                gpu::materialProposalSource(language.language, {.prefix = options.prefix,
+                                                                .first = exported.sampling->first,
+                                                                .rows = exported.sampling->rows});
+        files.write(file, gpu::fileText(language.language, source,
+                                        std::filesystem::path(file).stem().string()));
         exported.texts.push_back(file);
     }
     if (three) addThree(library, sums, options, listener, files, exported);

@@ -112,6 +112,11 @@ constexpr OptionRow libraryRows[] = {
               "functions as constants of the shader, exact and many times as slow"}
         .within(Bounds<double>{0, 10})
         .onlyFor(of::exported),
+    OptionRow{"sampling", at<&LibraryOptions::exporting, &LibraryExportOptions::sampling>,
+              "export: elevations of a proposal that is fitted to each material, with sample and "
+              "pdf in the shaders; 0: none"}
+        .within(Bounds<int>{0, 64})
+        .onlyFor(of::exported),
     OptionRow{"near", at<&LibraryOptions::map, &LibraryMapOptions::near>,
               "map: mean FLIP of the thumbnails of two neighbours up to which they are near "
               "duplicates"}

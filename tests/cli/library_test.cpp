@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 #include <utility>
@@ -103,6 +105,83 @@ TEST_F(LibraryCommand, ExportWritesFunctionsAsConstants) {
     const Json f = thirdMaterial(sidecar), test = sidecar["tests"][2 * 6 + 1];
     for (std::size_t c = 0; c < 3; ++c)
         EXPECT_NEAR(test["value"][c], f[std::min(c, f.size() - 1)], 1e-9);
+}
+
+/// A number of half precision, whole and not negative.
+double wholeHalf(const std::string& bytes, std::size_t at) {
+    const int bits = static_cast<unsigned char>(bytes[2 * at]) |
+                     static_cast<unsigned char>(bytes[2 * at + 1]) << 8;
+    return bits == 0 ? 0 : std::ldexp(1024 + (bits & 1023), (bits >> 10) - 25);
+}
+
+using Vector = std::array<double, 3>;
+
+/// GGX's density of visible normals (Heitz 2018), as one of the mirror direction of wo.
+double ggxDensity(const Vector& wo, const Vector& wi, double alpha) {
+    const Vector sum{wo[0] + wi[0], wo[1] + wi[1], wo[2] + wi[2]};
+    if (sum[2] <= 0) return 0;
+    const double cosine = sum[2] / std::hypot(sum[0], sum[1], sum[2]), c2 = cosine * cosine,
+                 d = alpha * alpha / (M_PI * std::pow(c2 * (alpha * alpha - 1) + 1, 2)),
+                 o2 = wo[2] * wo[2];
+    return d / (2 * (wo[2] + std::sqrt(alpha * alpha * (1 - o2) + o2)));
+}
+
+/// The density that a sidecar states in words, by the codes of a material's texels.
+double densityOf(const std::vector<double>& codes, const Vector& wo, const Vector& wi) {
+    const double rows = static_cast<double>(codes.size()) / 4,
+                 s = 1 - std::sqrt(std::max(0.0, 1 - std::tan(std::acos(wo[2]) / 2))),
+                 place = std::clamp(s * rows - 0.5, 0.0, rows - 1);
+    const std::size_t low = 4 * static_cast<std::size_t>(place),
+                      high = std::min(low + 4, codes.size() - 4);
+    const auto between = [&](double a, double b) {
+        return a + (place - std::floor(place)) * (b - a);
+    };
+    const auto width = [](double code) { return 1e-4 * std::pow(2e4, code / 255); };
+    double sum = 0, rest = 1;
+    for (const std::size_t k : {0, 2}) {
+        const double share = between(codes[low + k] / 255, codes[high + k] / 255);
+        const bool retro = codes[low + k + 1] > 255;
+        const double turn = retro ? 256 : 0, side = retro ? -1 : 1,
+                     alpha = between(width(codes[low + k + 1] - turn),
+                                     width(codes[high + k + 1] - turn));
+        for (const double up : {1, -1})
+            sum += share * ggxDensity(wo, {side * wi[0], side * wi[1], up * wi[2]}, alpha);
+        rest -= share;
+    }
+    return sum + rest * wi[2] / M_PI;
+}
+
+// tests/gpu/proposals runs the shaders.
+TEST_F(LibraryCommand, ExportKeepsAProposalForEachMaterial) {
+    learn("a.library");
+    const Json made = answer("export " + path("a.library") + " -o " + path("out") +
+                             " --target bin,glsl,wgsl --sampling 5 --table-error 1");
+    const Json& sampling = made["sampling"];
+    EXPECT_EQ(sampling["rows"], 5);
+    for (const Json& row : sampling["median"])
+        EXPECT_LT(row["variance"], row["variance_of_cosine"]) << row;
+    for (const char* file : {"out/a_hsh.glsl", "out/a_hsh.wgsl"})
+        for (const char* name : {"hsh_material_sample(", "hsh_material_pdf("})
+            EXPECT_NE(read(path(file)).find(name), std::string::npos) << file << name;
+    const Json sidecar = Json::parse(read(path("out/a.hsh.json")));
+    const std::size_t texels = sidecar["texels_per_material"], first = sampling["first_texel"];
+    EXPECT_EQ(texels, first + 5);
+    const std::string rows = read(path("out/a.coef.f16.bin"));
+    ASSERT_EQ(rows.size(), 8 * 8 * texels);
+    ASSERT_EQ(sidecar["samples"].size(), 3u * 8u);
+    for (const Json& sample : sidecar["samples"]) {
+        std::vector<double> codes;
+        for (std::size_t k = 0; k < 4 * 5; ++k)
+            codes.push_back(
+                wholeHalf(rows, 4 * (sample["material"].get<std::size_t>() * texels + first) + k));
+        const double pdf = sample["pdf"];
+        EXPECT_NEAR(densityOf(codes, sample["wo"], sample["wi"]), pdf, 1e-6 * pdf) << sample;
+    }
+    const Json plain = answer("export " + path("a.library") + " -o " + path("plain") +
+                              " --target bin,glsl --table-error 1");
+    EXPECT_TRUE(plain["sampling"].is_null());
+    EXPECT_EQ(plain["bytes"], 8 * first);
+    EXPECT_EQ(read(path("plain/a_hsh.glsl")).find("_sample("), std::string::npos);
 }
 
 // Pictures: tests/gpu/browser/three_module.mjs.

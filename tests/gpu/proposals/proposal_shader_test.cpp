@@ -3,6 +3,8 @@
 #include "../shaders/runners.h"
 #include "sample_cases.h"
 
+#include <hshfit/error.h>
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <lib/sampling/sampling_laws.h>
@@ -21,6 +23,11 @@ constexpr std::size_t perJob = Pairs::side * Pairs::side;
 
 const std::vector<SampleCase>& cases() {
     static const std::vector<SampleCase> all = sampleCases();
+    return all;
+}
+
+const std::vector<SampleCase>& libraryCases() {
+    static const std::vector<SampleCase> all = librarySampleCases();
     return all;
 }
 
@@ -146,10 +153,10 @@ void checkElevation(const SampleCase& one, const ShaderJob& job, const std::vect
     }
 }
 
-void prove(Language language, Run runner = {}) {
+void prove(Language language, Run runner = {}, const std::vector<SampleCase>& proved = cases()) {
     const bool together = language != Language::glslEs;
     if (!runner) runner = runnerOf(language);
-    for (const SampleCase& one : cases()) {
+    for (const SampleCase& one : proved) {
         SCOPED_TRACE(one.name);
         const std::vector<ShaderJob> jobs = sampleJobs(one);
         std::vector<std::vector<float>> found;
@@ -176,7 +183,7 @@ void prove(Language language, Run runner = {}) {
         EXPECT_LE(worst.wi, 1e-5);
         EXPECT_LE(worst.pdf, 1e-5);
         EXPECT_LE(worst.other, 1e-5);
-        EXPECT_GT(laws.probability, test::sidak(cases().size() * sampleElevations().size() * 7));
+        EXPECT_GT(laws.probability, test::sidak(proved.size() * sampleElevations().size() * 7));
         EXPECT_LE(laws.albedo, 4);
     }
 }
@@ -204,6 +211,32 @@ TEST(ProposalShader, MetalAsCpp) {
 }
 TEST(ProposalShader, OslAsCpp) {
     prove(Language::osl);
+}
+
+TEST(LibraryProposalShader, GlslOnVulkan) {
+    prove(Language::glsl, {}, libraryCases());
+}
+TEST(LibraryProposalShader, HlslOnVulkan) {
+    prove(Language::hlsl, {}, libraryCases());
+}
+TEST(LibraryProposalShader, SlangOnVulkan) {
+    prove(Language::slang, {}, libraryCases());
+}
+TEST(LibraryProposalShader, WgslOnVulkan) {
+    prove(Language::wgsl, {}, libraryCases());
+}
+TEST(LibraryProposalShader, GlslEsOnOpenGlEs) {
+    prove(Language::glslEs, {}, libraryCases());
+}
+TEST(LibraryProposalShader, MetalAsCpp) {
+    prove(Language::metal, {}, libraryCases());
+}
+TEST(LibraryProposalShader, OslHasNone) {
+    EXPECT_THROW(gpu::materialProposalSource(Language::osl, {.first = 3, .rows = 6}), UsageError);
+}
+TEST(LibraryProposalShader, TexelsOfAnisotropicProposalsAreRefused) {
+    const Proposal proposal{{{ProposalLobe{60, 180, 90, 0}, ProposalLobe{}}}};
+    EXPECT_THROW(gpu::proposalTexels(proposal), UsageError);
 }
 
 /// A fault in the text of `sample` is seen by the chi-square test.

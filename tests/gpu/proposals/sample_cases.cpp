@@ -4,6 +4,10 @@
 
 #include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/gpu/forms/form_shader.h>
+#include <hshfit/gpu/forms/library_table.h>
+#include <hshfit/material_library/library.h>
+#include <hshfit/material_library/log_terms.h>
+#include <hshfit/material_library/shared_functions.h>
 #include <hshfit/representation/forms/form.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <lib/formula_brdf.h>
@@ -83,7 +87,116 @@ Words wordsOf(gpu::Language language) {
     return {"osl", "float", "vector"};
 }
 
+constexpr const char* libraryMaterials[] = {"lambert:kd=.3/.2/.1", "ggx:alpha=.2,F0=.9/.6/.3",
+                                            "ggx:alpha=.1,F0=.05,kd=.4/.3/.1"};
+
+/// All of them in a basis of three components.
+const material_library::Library& library() {
+    namespace ml = material_library;
+    static const ml::Library made = [] {
+        const ml::LogSpace space;
+        std::vector<ml::Measured> measured;
+        for (const char* spec : libraryMaterials)
+            measured.push_back(
+                space.project(*open(spec), "m" + std::to_string(measured.size()), spec));
+        return ml::learn(space, std::move(measured), {}, {.components = 3, .bytes = 60},
+                         {.log = 10, .maximum = 10, .flip = 10});
+    }();
+    return made;
+}
+
+gpu::SharedSums constantSums() {
+    namespace ml = material_library;
+    gpu::SharedSums sums{.functions = ml::sharedFunctions(library().basis),
+                         .offset = ml::logOffset,
+                         .topFirst = std::log(ml::logOffset),
+                         .topStep = 1 / ml::topsPerLog,
+                         .parts = {},
+                         .materials = {}};
+    for (const auto& [function, scale] : ml::texelParts(library().basis))
+        sums.parts.push_back({function, scale});
+    for (const ml::Material& material : library().materials) {
+        const std::vector<double> row = ml::texelsOf(library().basis, material);
+        sums.materials.insert(sums.materials.end(), row.begin(), row.end());
+    }
+    return sums;
+}
+
+/// Sums of the library, with a table or without.
+const gpu::SharedSums& sharedSums(bool table) {
+    static const gpu::SharedSums constants = constantSums(),
+                                 tabled = gpu::tabledSums(constants, {40, 23, 18});
+    return table ? tabled : constants;
+}
+
+/// `sample`, `pdf` and `eval` of one material, as the programs call them.
+std::string callsOf(gpu::Language language, const SampleCase& one) {
+    const std::string m = std::to_string(one.material), u = "u1, u2, u3";
+    if (language == gpu::Language::wgsl)
+        return "\nfn hsh_sample(wo: vec3<f32>, u1: f32, u2: f32, u3: f32) -> vec3<f32> { return "
+               "hsh_material_sample(" +
+               m + ", wo, " + u +
+               "); }\n"
+               "fn hsh_pdf(wo: vec3<f32>, wi: vec3<f32>) -> f32 { return hsh_material_pdf(" +
+               m +
+               ", wo, wi); }\n"
+               "fn hsh_eval(wo: vec3<f32>, wi: vec3<f32>) -> vec3<f32> { return hsh_material(" +
+               m + ", wo, wi); }\n";
+    const bool metal = language == gpu::Language::metal;
+    const std::string v = wordsOf(language).vector, texture = metal ? "coefficients, " : "",
+                      table = metal && one.library->table ? "basis, linear, " : "";
+    // As C++, textures of Metal are arguments that the program makes of its input.
+    const std::string first =
+        metal ? "const texture2d_array<float> coefficients{&stub::job.coefficients}; " : "";
+    const std::string second =
+        table.empty() ? ""
+                      : "const texture2d_array<float> basis{&stub::job.basis}; sampler linear; ";
+    const std::string eval = "hsh_eval(" + v + " wo, " + v + " wi)";
+    const std::string begin = metal ? "\ninline " : "\n";
+    return begin + v + " hsh_sample(" + v + " wo, float u1, float u2, float u3) { " + first +
+           "return hsh_material_sample(" + texture + m + ", wo, " + u + "); }" + begin +
+           "float hsh_pdf(" + v + " wo, " + v + " wi) { " + first + "return hsh_material_pdf(" +
+           texture + m + ", wo, wi); }" + begin + v + " " + eval + " { " + first + second +
+           "return hsh_material(" + texture + table + m + ", wo, wi); }\n";
+}
+
 }  // namespace
+
+std::vector<SampleCase> librarySampleCases() {
+    constexpr std::size_t rows = 6;
+    std::vector<SampleCase> cases;
+    for (const bool table : {false, true}) {
+        gpu::SharedSums sums = sharedSums(table);
+        const std::size_t first = cases.size();
+        sums.further = rows;
+        for (std::size_t m = 0; m < sums.count(); ++m) {
+            SampleCase one{.name = std::string(table ? "table, " : "constants, ") +
+                                   libraryMaterials[m]};
+            one.material = m;
+            one.payload.head.channels = Channels::rgb();
+            const material_library::Material& material = library().materials[m];
+            if (table)
+                one.brdf = std::make_unique<gpu::TabledBrdf>(sharedSums(true), m);
+            else
+                one.brdf = open(library(), material, material.name);
+            one.record.proposal = fitProposal(*one.brdf, {.elevations = rows});
+            // Any density will do for the first: one with a retro lobe.
+            if (m == 0)
+                for (Proposal::Row& row : one.record.proposal.rows)
+                    row = {ProposalLobe{60, 180, 180, 0}, ProposalLobe{50, 140, 140, 1}};
+            one.sampler = proposalSampler(one.record.proposal);
+            const std::vector<double> texels = gpu::proposalTexels(one.record.proposal);
+            sums.furtherTexels.insert(sums.furtherTexels.end(), texels.begin(), texels.end());
+            cases.push_back(std::move(one));
+        }
+        for (std::size_t k = first; k < cases.size(); ++k) {
+            cases[k].library = sums;
+            cases[k].payload.coefficients = gpu::materialTexels(sums);
+            if (table) cases[k].payload.basisTexels = sums.table->texels();
+        }
+    }
+    return cases;
+}
 
 std::vector<SampleCase> sampleCases() {
     using Kind = Representation::Kind;
@@ -111,11 +224,17 @@ ShaderJob sampleJob(const SampleCase& one, std::vector<Direction> wo, std::vecto
     ShaderJob job{
         one.payload, {std::move(wo), std::move(u)}, {.order = 0, .colours = 0, .values = {}}};
     if (one.form) job.form = "constants";
+    if (one.library) job.form = "texture";
     job.sampling = true;
     return job;
 }
 
 std::string sampleSnippet(gpu::Language language, const SampleCase& one) {
+    if (one.library)
+        return gpu::libraryShaderSource(language, *one.library, "hsh") +
+               gpu::materialProposalSource(language, {.first = one.library->stride(),
+                                                      .rows = one.record.proposal.rows.size()}) +
+               callsOf(language, one);
     const std::string snippet =
         one.form ? gpu::formShaderSource(language, *one.form, {.storage = gpu::Storage::constants})
                  : gpu::shaderSource(language, one.payload, {.environmentOrder = 0});

@@ -4,6 +4,7 @@
 
 #include <hshfit/brdf/brdf.h>
 #include <hshfit/gpu/forms/form_payload.h>
+#include <hshfit/gpu/forms/library_shader.h>
 #include <hshfit/gpu/proposals/proposal_shader.h>
 #include <hshfit/sampling/sampler.h>
 
@@ -20,6 +21,9 @@ struct SampleCase {
     std::string name;
     gpu::Payload payload = {};
     std::optional<gpu::FormPayload> form = {};
+    /// In their place a material of a library, by the shader of all of them.
+    std::optional<gpu::SharedSums> library = {};
+    std::size_t material = 0;
     std::unique_ptr<Brdf> brdf = {};  ///< in double precision, what the shader evaluates to
     gpu::ProposalRecord record = {};
     std::shared_ptr<const Sampler> sampler = {};
@@ -29,6 +33,10 @@ struct SampleCase {
 
 /// Every form, isotropic and not, with lobes from wide to narrow, mirror and retro.
 std::vector<SampleCase> sampleCases();
+
+/// Materials of one library, matte and glossy, one with a retro lobe: the functions of its shader
+/// as constants, and looked up in a table.
+std::vector<SampleCase> librarySampleCases();
 
 /// wo, and in place of wi the three numbers that a direction is drawn with, which single precision
 /// holds exactly.

@@ -111,7 +111,18 @@ SharedSums tabledSums(const SharedSums& sums, const TableSize& size) {
 }
 
 Texels materialTexels(const SharedSums& sums) {
-    return rowsOf(sums.materials, sums.stride());
+    if (sums.further == 0) return rowsOf(sums.materials, sums.stride());
+    std::vector<double> all;
+    all.reserve(4 * sums.width() * sums.count());
+    const auto append = [&](const std::vector<double>& from, std::size_t texels, std::size_t m) {
+        const auto first = from.begin() + static_cast<std::ptrdiff_t>(4 * texels * m);
+        all.insert(all.end(), first, first + static_cast<std::ptrdiff_t>(4 * texels));
+    };
+    for (std::size_t m = 0; m < sums.count(); ++m) {
+        append(sums.materials, sums.stride(), m);
+        append(sums.furtherTexels, sums.further, m);
+    }
+    return rowsOf(all, sums.width());
 }
 
 std::string libraryShaderSource(Language language, const SharedSums& sums,

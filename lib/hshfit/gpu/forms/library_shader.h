@@ -31,17 +31,23 @@ struct SharedSums {
     std::shared_ptr<const FunctionTable> table = {};
     /// The texels of the first material, of the second, …; without a table the fourth lanes are 0.
     std::vector<double> materials;
+    /// Further texels of each material, whole numbers up to 2048, which `f` does not need:
+    /// proposals for sampling (proposals/proposal_shader.h). [material][further][lane]
+    std::vector<double> furtherTexels = {};
+    std::size_t further = 0;
 
     std::size_t stride() const {  ///< texels of a material
         return 1 + (table ? 3 * table->groups() : parts.size());
     }
+    std::size_t width() const { return stride() + further; }  ///< and those after them
     std::size_t count() const { return materials.size() / (4 * stride()); }
 };
 
 /// The same with a table; q_k of more than 2048 are rounded to halves.
 SharedSums tabledSums(const SharedSums& sums, const TableSize& size);
 
-/// The texels of all materials in float16: a row for each material, 2048 of them a layer.
+/// The texels of all materials in float16: a row for each material, 2048 of them a layer, the
+/// further ones last.
 Texels materialTexels(const SharedSums& sums);
 
 /// A snippet with one function for all materials:

@@ -1,5 +1,6 @@
 #include <hshfit/gpu/proposals/proposal_shader.h>
 
+#include <hshfit/error.h>
 #include <hshfit/files/template_text.h>
 #include <hshfit/gpu/language_words.h>
 #include <hshfit/gpu/shader_data.h>
@@ -9,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <vector>
 
@@ -22,6 +24,15 @@ namespace hshfit::gpu::inline proposals {
 namespace {
 
 using kainjow::mustache::data;
+
+/// The place of wo between the rows.
+void setPlace(std::size_t rows, data& page) {
+    const auto count = static_cast<double>(rows);
+    page.set("rowCount", std::to_string(rows));
+    page.set("rows", shaderNumber(count));
+    page.set("last", shaderNumber(count - 1));
+    page.set("lastCell", shaderNumber(std::max(0.0, count - 2)));
+}
 
 /// A lobe of an isotropic proposal takes two numbers of a row's one vector, of another one three of
 /// a vector of its own.
@@ -54,13 +65,23 @@ void setTable(const Proposal& proposal, data& page) {
     page.set("isotropic", isotropic);
     page.set("count", std::to_string(vectors.size()));
     page.set("numbersInTable", std::to_string(4 * vectors.size()));
-    const double count = static_cast<double>(proposal.rows.size());
-    page.set("rowCount", std::to_string(proposal.rows.size()));
-    page.set("rows", shaderNumber(count));
-    page.set("last", shaderNumber(count - 1));
-    page.set("lastCell", shaderNumber(std::max(0.0, count - 2)));
+    setPlace(proposal.rows.size(), page);
     page.set("retro1", proposal.rows.front()[1].retro == 1);
     page.set("sign1", proposal.rows.front()[1].retro == 1 ? "0.0 - " : "");
+}
+
+std::string textFrom(Language language, data& page) {
+    setPartials({{"comment", embedded::proposal_comment},
+                 {"rowBody", embedded::proposal_row},
+                 {"angleBody", embedded::proposal_angle},
+                 {"ggxBody", embedded::proposal_ggx},
+                 {"pdfBody", embedded::proposal_density},
+                 {"sampleBody", embedded::proposal_sample}},
+                page);
+    const std::string_view text = textOf(
+        language, {embedded::proposal_glsl, embedded::proposal_glsl, embedded::proposal_hlsl,
+                   embedded::proposal_wgsl, embedded::proposal_metal, embedded::proposal_osl});
+    return fmt::format("\n{}", rendered(text, page));
 }
 
 void setEfficiency(const std::vector<ProposalRow>& rows, data& page) {
@@ -93,17 +114,40 @@ std::string proposalSource(Language language, const ProposalRecord& record,
     page.set("cosine", options.cosine);
     setTable(record.proposal, page);
     setEfficiency(record.rows, page);
-    setPartials({{"comment", embedded::proposal_comment},
-                 {"rowBody", embedded::proposal_row},
-                 {"angleBody", embedded::proposal_angle},
-                 {"ggxBody", embedded::proposal_ggx},
-                 {"pdfBody", embedded::proposal_density},
-                 {"sampleBody", embedded::proposal_sample}},
-                page);
-    const std::string_view text = textOf(
-        language, {embedded::proposal_glsl, embedded::proposal_glsl, embedded::proposal_hlsl,
-                   embedded::proposal_wgsl, embedded::proposal_metal, embedded::proposal_osl});
-    return fmt::format("\n{}", rendered(text, page));
+    return textFrom(language, page);
+}
+
+std::vector<double> proposalTexels(const Proposal& proposal) {
+    checkProposal(proposal);
+    if (!proposal.isotropic())
+        throw UsageError("texels of a proposal have one width for each lobe: it is isotropic");
+    std::vector<double> lanes;
+    for (const Proposal::Row& row : proposal.rows)
+        for (const ProposalLobe& lobe : row) {
+            lanes.push_back(lobe.share);
+            lanes.push_back(lobe.widthX + (lobe.retro == 1 ? 256 : 0));
+        }
+    return lanes;
+}
+
+std::string materialProposalSource(Language language, const MaterialProposals& proposals) {
+    checkPrefix(proposals.prefix);
+    if (language == Language::osl)
+        throw UsageError("OSL reads no texture by whole numbers, so that a library has no shader");
+    data page;
+    setLanguageWords(language, proposals.prefix, page);
+    page.set("materials", true);
+    page.set("snippet", proposals.prefix);
+    page.set("prefix", proposals.prefix + "_material");
+    page.set("first", std::to_string(proposals.first));
+    page.set("second", std::to_string(proposals.first + 1));
+    setPlace(proposals.rows, page);
+    // proposalWidth as a power of two.
+    page.set("widthStep", shaderNumber(std::log2(2e4) / 255));
+    page.set("widthFirst", shaderNumber(-std::log2(1e-4)));
+    page.set("retro1", true);
+    page.set("sign1", "side * ");
+    return textFrom(language, page);
 }
 
 }  // namespace hshfit::gpu::inline proposals
