@@ -281,10 +281,11 @@ private:
 /// The arrays of a head whose elements are one material each.
 constexpr std::array<std::string_view, 2> rowArrays{"materials", "measured"};
 
+using RowCall = std::function<void(std::string_view array, const JsonFields& row)>;
+
 /// Calls `call(array, row)` for each row, and leaves the arrays of the head empty: a tree of all
 /// rows takes kilobytes a material.
-Json parseHead(std::string_view text, const std::string& name,
-               const std::function<void(std::string_view array, const JsonFields& row)>& call) {
+Json parseHead(std::string_view text, const std::string& name, const RowCall& call) {
     std::string key;
     bool inRows = false;
     std::size_t count = 0;
@@ -304,11 +305,12 @@ Json parseHead(std::string_view text, const std::string& name,
     });
 }
 
-/// Reads a library and hands its materials on.
+/// Reads a library and hands its materials on. Calls `passed` after each row, of which each is read
+/// twice: the basis that codes need may be named behind them.
 Library parse(const Reader& reader, const std::string& name, const BasisOf& basisOf,
-              const LibraryCalls& calls) {
-    // The basis that codes need may be named behind them.
-    const Json document = parseHead(reader.head(), name, {});
+              const LibraryCalls& calls, const std::function<void()>& passed) {
+    const auto pass = [&](std::string_view, const JsonFields&) { passed(); };
+    const Json document = parseHead(reader.head(), name, pass);
     const JsonFields root(document, "", name);
     if (root.word("format") != libraryFormat)
         root.fail(fmt::format("is not '{}'", libraryFormat), "format");
@@ -346,6 +348,7 @@ Library parse(const Reader& reader, const std::string& name, const BasisOf& basi
             calls.material(materials.next(row));
         else
             calls.measured(measured.next(row));
+        passed();
     });
     materials.requireEnd();
     measured.requireEnd();
@@ -373,7 +376,7 @@ struct Kept {
 Library parseLibrary(std::span<const unsigned char> bytes, const std::string& name,
                      const BasisOf& basisOf) {
     Kept kept;
-    return kept.in(parse(Reader(bytes, name), name, basisOf, kept.calls()));
+    return kept.in(parse(Reader(bytes, name), name, basisOf, kept.calls(), [] {}));
 }
 
 Library readLibrary(const std::string& path) {
@@ -397,13 +400,11 @@ Library readLibrary(const std::string& path, const LibraryCalls& calls) {
             fmt::format("{}: is no library of materials; {} makes one", path, Call{"learn"}));
     // Pages that were read would stay in memory until the end.
     std::size_t count = 0;
-    const auto next = [&] {
+    const auto passed = [&] {
         if (++count % rowsWithoutRelease == 0) file.releasePages();
     };
-    const LibraryCalls releasing{[&](Material m) { calls.material(std::move(m)), next(); },
-                                 [&](Measured m) { calls.measured(std::move(m)), next(); }};
     try {
-        Library library = parse(Reader(file.bytes(), path), path, basisOf, releasing);
+        Library library = parse(Reader(file.bytes(), path), path, basisOf, calls, passed);
         file.checkIntact();
         return library;
     } catch (const InputError&) {
