@@ -125,6 +125,24 @@ TEST_F(TimedShaders, TakeTurns) {
     }
 }
 
+TEST_F(TimedShaders, ReadWhatIsWrittenBetweenRuns) {
+    gpu::ComputeProgram program(
+        device(),
+        gpu::compileGlsl("#version 450\nlayout(local_size_x = 4) in;\n"
+                         "layout(std430, binding = 0) readonly buffer In { float from[]; };\n"
+                         "layout(std430, binding = 1) writeonly buffer Out { float to[]; };\n"
+                         "void main() { uint k = gl_LocalInvocationID.x; "
+                         "to[k] = 2.0 * from[k]; }\n"),
+        {{.binding = 0, .numbers = {1, 2, 3, 4}}, {.binding = 1, .count = 4}});
+    program.run(1);
+    EXPECT_EQ(program.read(1), (std::vector<float>{2, 4, 6, 8}));
+    program.write(0, std::vector<float>{5, 6});
+    program.run(1);
+    EXPECT_EQ(program.read(1), (std::vector<float>{10, 12, 6, 8}));
+    EXPECT_THROW(program.write(0, std::vector<float>(5)), UsageError);
+    EXPECT_THROW(program.write(2, std::vector<float>(1)), UsageError);
+}
+
 TEST(ComputeDevice, NamesTheDevicesThatThereAre) {
     try {
         const gpu::ComputeDevice device({.name = "no such device"});

@@ -171,7 +171,19 @@ struct Buffer {
     void put(const void* from, std::size_t count) const { std::memcpy(data, from, count); }
 };
 
-/// A texture array with its levels, uploaded, ready to be sampled.
+vk::ImageViewType viewOf(ComputeResource::Shape shape) {
+    switch (shape) {
+        case ComputeResource::Shape::flat:
+            return vk::ImageViewType::e2D;
+        case ComputeResource::Shape::cube:
+            return vk::ImageViewType::eCube;
+        case ComputeResource::Shape::array:
+            break;
+    }
+    return vk::ImageViewType::e2DArray;
+}
+
+/// A texture with its levels, uploaded, ready to be sampled.
 struct Image {
     vk::raii::Image image;
     vk::raii::DeviceMemory memory;
@@ -197,7 +209,8 @@ private:
                 static_cast<std::uint32_t>(resource.texels.layers)};
     }
     static vk::ImageCreateInfo infoOf(const ComputeResource& resource) {
-        return {{},
+        const bool cube = resource.shape == ComputeResource::Shape::cube;
+        return {cube ? vk::ImageCreateFlagBits::eCubeCompatible : vk::ImageCreateFlags{},
                 vk::ImageType::e2D,
                 formatOf(resource.texels.number),
                 extentOf(resource.texels),
@@ -211,7 +224,7 @@ private:
                               const ComputeResource& resource) const {
         image.bindMemory(*memory, 0);
         return {parts.device,
-                vk::ImageViewCreateInfo({}, *image, vk::ImageViewType::e2DArray,
+                vk::ImageViewCreateInfo({}, *image, viewOf(resource.shape),
                                         formatOf(resource.texels.number), {}, rangeOf(resource))};
     }
     void upload(const ComputeDevice::Parts& parts, const ComputeResource& resource) const {
@@ -325,6 +338,12 @@ struct ComputeProgram::Parts {
             {});
     }
 
+    const Buffer& bufferAt(std::uint32_t binding) const {
+        for (std::size_t k = 0; k < resources.size(); ++k)
+            if (resources[k].binding == binding && buffers[k]) return *buffers[k];
+        throw UsageError(fmt::format("binding {} is no buffer", binding));
+    }
+
     double run(std::uint32_t groups) const {
         const bool stamped = device.nanosecondsPerTick > 0;
         const auto start = std::chrono::steady_clock::now();
@@ -377,15 +396,18 @@ double ComputeProgram::run(std::uint32_t groups) {
     return vulkanCall([&] { return parts_->run(groups); });
 }
 
+void ComputeProgram::write(std::uint32_t binding, std::span<const float> numbers) {
+    const Buffer& buffer = parts_->bufferAt(binding);
+    if (numbers.size_bytes() > buffer.bytes)
+        throw UsageError(fmt::format("binding {} has fewer numbers", binding));
+    buffer.put(numbers.data(), numbers.size_bytes());
+}
+
 std::vector<float> ComputeProgram::read(std::uint32_t binding) const {
-    for (std::size_t k = 0; k < parts_->resources.size(); ++k) {
-        if (parts_->resources[k].binding != binding || !parts_->buffers[k]) continue;
-        const Buffer& buffer = *parts_->buffers[k];
-        std::vector<float> numbers(buffer.bytes / 4);
-        std::memcpy(numbers.data(), buffer.data, 4 * numbers.size());
-        return numbers;
-    }
-    throw UsageError(fmt::format("binding {} is no buffer", binding));
+    const Buffer& buffer = parts_->bufferAt(binding);
+    std::vector<float> numbers(buffer.bytes / 4);
+    std::memcpy(numbers.data(), buffer.data, 4 * numbers.size());
+    return numbers;
 }
 
 }  // namespace hshfit::gpu::inline vulkan

@@ -49,14 +49,20 @@ private:
 /// A thing at a binding of descriptor set 0.
 struct ComputeResource {
     enum class Kind {
-        sampledTexture,  ///< a texture array with its sampler: sampler2DArray
-        texture,         ///< the texture array alone
+        sampledTexture,  ///< a texture with its sampler
+        texture,         ///< the texture alone
         sampler,         ///< linear, between levels too, clamped to the edge
         uniforms,        ///< a uniform block of `numbers`
         buffer,          ///< a storage buffer that begins with `numbers`
     };
+    enum class Shape {
+        array,  ///< sampler2DArray
+        flat,   ///< sampler2D, of one layer
+        cube,   ///< samplerCube; the layers are +x -x +y -y +z -z
+    };
     std::uint32_t binding = 0;
     Kind kind = Kind::buffer;
+    Shape shape = Shape::array;  ///< of a texture
     Texels texels = {};
     std::vector<Texels> levels = {};  ///< of a texture, after its first: half as wide and high
     std::vector<float> numbers = {};
@@ -75,6 +81,8 @@ public:
     /// Runs `groups` work groups and waits. The seconds between two time stamps on the device,
     /// before and after; on one without time stamps, of the wall clock.
     double run(std::uint32_t groups);
+    /// Replaces the first numbers of a storage buffer.
+    void write(std::uint32_t binding, std::span<const float> numbers);
     /// The content of a storage buffer.
     std::vector<float> read(std::uint32_t binding) const;
 

@@ -38,6 +38,9 @@ ComputeProgram::~ComputeProgram() = default;
 double ComputeProgram::run(std::uint32_t) {
     refuse();
 }
+void ComputeProgram::write(std::uint32_t, std::span<const float>) {
+    refuse();
+}
 std::vector<float> ComputeProgram::read(std::uint32_t) const {
     refuse();
 }
