@@ -1,4 +1,4 @@
-#include "runners.h"
+#include "bound_shader.h"
 
 #define GL_GLEXT_PROTOTYPES
 #include <EGL/egl.h>
@@ -7,48 +7,34 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <utility>
 
 namespace hshfit::shaders {
 namespace {
 
-/// A context without a surface on Mesa's software renderer; current while it lives.
-class Context {
-public:
-    explicit Context(bool es) {
-        const auto getDisplay = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(
-            eglGetProcAddress("eglGetPlatformDisplayEXT"));
-        if (getDisplay == nullptr) throw Missing("EGL has no platform displays");
-        display_ = getDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
-        EGLint major = 0, minor = 0;
-        if (eglInitialize(display_, &major, &minor) == EGL_FALSE)
-            throw Missing("no EGL display without a surface (libegl1, libgl1-mesa-dri)");
-        eglBindAPI(es ? EGL_OPENGL_ES_API : EGL_OPENGL_API);
-        const EGLint wanted[] = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE,
-                                 es ? EGL_OPENGL_ES3_BIT : EGL_OPENGL_BIT, EGL_NONE};
-        EGLConfig config = nullptr;
-        EGLint count = 0;
-        eglChooseConfig(display_, wanted, &config, 1, &count);
-        const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION, es ? 3 : 4, EGL_CONTEXT_MINOR_VERSION,
-                                  es ? 0 : 5, EGL_NONE};
-        context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, version);
-        if (count == 0 || context_ == EGL_NO_CONTEXT ||
-            eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) == EGL_FALSE) {
-            eglTerminate(display_);
-            throw Missing(es ? "no OpenGL ES 3 through EGL" : "no OpenGL 4.5 through EGL");
-        }
-    }
-    Context(const Context&) = delete;
-    Context& operator=(const Context&) = delete;
-    ~Context() {
-        eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-        eglDestroyContext(display_, context_);
-        eglTerminate(display_);
-    }
+using gpu::ComputeResource;
+using Choice = gpu::DeviceChoice::Kind;
 
-private:
-    EGLDisplay display_ = EGL_NO_DISPLAY;
-    EGLContext context_ = EGL_NO_CONTEXT;
+/// Texture units of the samplers that fragment shaders of the tests name.
+constexpr std::pair<const char*, GLint> esSamplers[] = {
+    {"hsh_coefficients", 0},
+    {"hsh_map", 0},
+    {"hsh_coefficients_table", 0},
+    {"hsh_splitSum_table", 0},
+    {"hsh_ltc_table", 0},
+    {"hsh_prefiltered_table", 0},
+    {"hsh_basis", 1},
+    {"hsh_shared", 1},
+    {"hsh_splitSum_cube", 1},
+    {"hsh_prefiltered_cube", 1},
+    {"wos", 2},
+    {"wis", 3},
+    {"lights", 4},
+    {"places", 6},
+    {"hsh_harmonics", 7},
 };
+constexpr GLenum unitOfTargets = 8;
 
 /// An OpenGL function by its name; `Type` is its PFN…PROC.
 template <class Type>
@@ -59,6 +45,25 @@ Type function(const char* name) {
 }
 #define GL(type, name) function<type>(#name)
 
+/// The objects of one run, deleted at its end.
+struct Objects {
+    std::vector<GLuint> textures, buffers, frames, shaders, programs;
+    GLuint output = 0;  ///< the buffer that a compute shader writes
+
+    Objects() = default;
+    Objects(const Objects&) = delete;
+    Objects& operator=(const Objects&) = delete;
+    ~Objects() {
+        const auto size = [](const auto& names) { return static_cast<GLsizei>(names.size()); };
+        GL(PFNGLDELETETEXTURESPROC, glDeleteTextures)(size(textures), textures.data());
+        GL(PFNGLDELETEBUFFERSPROC, glDeleteBuffers)(size(buffers), buffers.data());
+        if (!frames.empty())
+            GL(PFNGLDELETEFRAMEBUFFERSPROC, glDeleteFramebuffers)(size(frames), frames.data());
+        for (const GLuint name : shaders) GL(PFNGLDELETESHADERPROC, glDeleteShader)(name);
+        for (const GLuint name : programs) GL(PFNGLDELETEPROGRAMPROC, glDeleteProgram)(name);
+    }
+};
+
 std::string logOf(GLuint object, bool program) {
     std::array<char, 4096> text{};
     if (program)
@@ -68,20 +73,23 @@ std::string logOf(GLuint object, bool program) {
     return text.data();
 }
 
-GLuint compile(GLenum stage, const std::string& source) {
+void addShader(GLenum stage, const std::string& source, Objects& objects) {
     const GLuint shader = GL(PFNGLCREATESHADERPROC, glCreateShader)(stage);
+    objects.shaders.push_back(shader);
     const char* text = source.c_str();
     GL(PFNGLSHADERSOURCEPROC, glShaderSource)(shader, 1, &text, nullptr);
     GL(PFNGLCOMPILESHADERPROC, glCompileShader)(shader);
     GLint good = 0;
     GL(PFNGLGETSHADERIVPROC, glGetShaderiv)(shader, GL_COMPILE_STATUS, &good);
     if (good == 0) throw Refused(logOf(shader, false));
-    return shader;
 }
 
-GLuint link(const std::vector<GLuint>& shaders) {
+/// The program of all shaders, in use.
+GLuint link(Objects& objects) {
     const GLuint program = GL(PFNGLCREATEPROGRAMPROC, glCreateProgram)();
-    for (const GLuint shader : shaders) GL(PFNGLATTACHSHADERPROC, glAttachShader)(program, shader);
+    objects.programs.push_back(program);
+    for (const GLuint shader : objects.shaders)
+        GL(PFNGLATTACHSHADERPROC, glAttachShader)(program, shader);
     GL(PFNGLLINKPROGRAMPROC, glLinkProgram)(program);
     GLint good = 0;
     GL(PFNGLGETPROGRAMIVPROC, glGetProgramiv)(program, GL_LINK_STATUS, &good);
@@ -108,9 +116,10 @@ Format formatOf(gpu::Number number) {
     return {GL_RGBA8, GL_UNSIGNED_BYTE};
 }
 
-GLuint newTexture(GLenum unit, GLenum target, GLint filter) {
+GLuint newTexture(GLenum unit, GLenum target, GLint filter, Objects& objects) {
     GLuint texture = 0;
     GL(PFNGLGENTEXTURESPROC, glGenTextures)(1, &texture);
+    objects.textures.push_back(texture);
     GL(PFNGLACTIVETEXTUREPROC, glActiveTexture)(GL_TEXTURE0 + unit);
     GL(PFNGLBINDTEXTUREPROC, glBindTexture)(target, texture);
     const auto set = GL(PFNGLTEXPARAMETERIPROC, glTexParameteri);
@@ -121,39 +130,86 @@ GLuint newTexture(GLenum unit, GLenum target, GLint filter) {
     return texture;
 }
 
-void upload(GLenum unit, const gpu::Texels& first, const std::vector<gpu::Texels>& levels = {}) {
-    newTexture(unit, GL_TEXTURE_2D_ARRAY, GL_LINEAR);
-    const auto [internal, type] = formatOf(first.number);
-    std::vector<const gpu::Texels*> all{&first};
-    for (const gpu::Texels& level : levels) all.push_back(&level);
-    for (std::size_t k = 0; k < all.size(); ++k) {
-        GL(PFNGLTEXIMAGE3DPROC, glTexImage3D)
-        (GL_TEXTURE_2D_ARRAY, static_cast<GLint>(k), internal, all[k]->width, all[k]->height,
-         static_cast<GLsizei>(all[k]->layers), 0, GL_RGBA, type, all[k]->bytes.data());
+GLenum targetOf(ComputeResource::Shape shape) {
+    switch (shape) {
+        case ComputeResource::Shape::flat:
+            return GL_TEXTURE_2D;
+        case ComputeResource::Shape::cube:
+            return GL_TEXTURE_CUBE_MAP;
+        case ComputeResource::Shape::array:
+            break;
     }
-    if (levels.empty()) return;
+    return GL_TEXTURE_2D_ARRAY;
+}
+
+void uploadLevel(ComputeResource::Shape shape, GLint level, const gpu::Texels& texels) {
+    const auto [internal, type] = formatOf(texels.number);
+    const int width = texels.width, height = texels.height;
+    if (shape == ComputeResource::Shape::array) {
+        GL(PFNGLTEXIMAGE3DPROC, glTexImage3D)
+        (GL_TEXTURE_2D_ARRAY, level, internal, width, height, static_cast<GLsizei>(texels.layers),
+         0, GL_RGBA, type, texels.bytes.data());
+        return;
+    }
+    const bool cube = shape == ComputeResource::Shape::cube;
+    const std::size_t size = texels.bytes.size() / texels.layers;
+    for (std::size_t k = 0; k < texels.layers; ++k) {
+        const GLenum target =
+            cube ? GL_TEXTURE_CUBE_MAP_POSITIVE_X + static_cast<GLenum>(k) : GL_TEXTURE_2D;
+        GL(PFNGLTEXIMAGE2DPROC, glTexImage2D)
+        (target, level, internal, width, height, 0, GL_RGBA, type, texels.bytes.data() + k * size);
+    }
+}
+
+void uploadTexture(const ComputeResource& resource, Objects& objects) {
+    const GLenum target = targetOf(resource.shape);
+    // Flat textures are tables, fetched without a filter.
+    const bool table = resource.shape == ComputeResource::Shape::flat;
+    newTexture(resource.binding, target, table ? GL_NEAREST : GL_LINEAR, objects);
+    uploadLevel(resource.shape, 0, resource.texels);
+    if (resource.levels.empty()) return;
+    for (std::size_t k = 0; k < resource.levels.size(); ++k)
+        uploadLevel(resource.shape, static_cast<GLint>(k) + 1, resource.levels[k]);
     const auto set = GL(PFNGLTEXPARAMETERIPROC, glTexParameteri);
-    set(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-    set(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAX_LEVEL, static_cast<GLint>(levels.size()));
+    set(target, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    set(target, GL_TEXTURE_MAX_LEVEL, static_cast<GLint>(resource.levels.size()));
 }
 
-void uploadHarmonics(GLenum unit, const ShaderJob& job) {
-    if (job.harmonics.empty()) return;
-    upload(unit, job.harmonics[0], {job.harmonics.begin() + 1, job.harmonics.end()});
+void uploadBuffer(GLenum target, const ComputeResource& resource, Objects& objects) {
+    GLuint buffer = 0;
+    GL(PFNGLGENBUFFERSPROC, glGenBuffers)(1, &buffer);
+    objects.buffers.push_back(buffer);
+    std::vector<float> numbers = resource.numbers;
+    numbers.resize(std::max(numbers.size(), resource.count));
+    GL(PFNGLBINDBUFFERPROC, glBindBuffer)(target, buffer);
+    GL(PFNGLBUFFERDATAPROC, glBufferData)
+    (target, static_cast<GLsizeiptr>(numbers.size() * 4), numbers.data(), GL_DYNAMIC_READ);
+    GL(PFNGLBINDBUFFERBASEPROC, glBindBufferBase)(target, resource.binding, buffer);
 }
 
-/// A 2-D texture of numbers, 3 or 1 of them a texel, to be fetched exactly.
-void uploadNumbers(GLenum unit, int width, int height, const std::vector<float>& numbers) {
-    newTexture(unit, GL_TEXTURE_2D, GL_NEAREST);
-    const bool vectors = numbers.size() == static_cast<std::size_t>(3 * width * height);
-    GL(PFNGLTEXIMAGE2DPROC, glTexImage2D)
-    (GL_TEXTURE_2D, 0, vectors ? GL_RGB32F : GL_R32F, width, height, 0, vectors ? GL_RGB : GL_RED,
-     GL_FLOAT, numbers.data());
-}
-
-void setSampler(GLuint program, const char* name, GLint unit) {
-    const GLint at = GL(PFNGLGETUNIFORMLOCATIONPROC, glGetUniformLocation)(program, name);
-    if (at >= 0) GL(PFNGLUNIFORM1IPROC, glUniform1i)(at, unit);
+void upload(const BoundShader& shader, GLuint program, Objects& objects) {
+    for (const ComputeResource& resource : shader.resources) {
+        switch (resource.kind) {
+            case ComputeResource::Kind::sampledTexture:
+                uploadTexture(resource, objects);
+                break;
+            case ComputeResource::Kind::uniforms: {
+                uploadBuffer(GL_UNIFORM_BUFFER, resource, objects);
+                const GLuint at =
+                    GL(PFNGLGETUNIFORMBLOCKINDEXPROC, glGetUniformBlockIndex)(program, "hsh_Block");
+                GL(PFNGLUNIFORMBLOCKBINDINGPROC, glUniformBlockBinding)
+                (program, at, resource.binding);
+                break;
+            }
+            case ComputeResource::Kind::buffer:
+                uploadBuffer(GL_SHADER_STORAGE_BUFFER, resource, objects);
+                if (resource.binding == 4) objects.output = objects.buffers.back();
+                break;
+            case ComputeResource::Kind::texture:
+            case ComputeResource::Kind::sampler:
+                throw std::invalid_argument("OpenGL has no textures apart from their samplers");
+        }
+    }
 }
 
 void checkErrors(const char* where) {
@@ -162,97 +218,32 @@ void checkErrors(const char* where) {
         throw std::runtime_error(std::string(where) + ": OpenGL error " + std::to_string(error));
 }
 
-GLuint storage(GLuint binding, std::size_t bytes, const void* data) {
-    GLuint buffer = 0;
-    GL(PFNGLGENBUFFERSPROC, glGenBuffers)(1, &buffer);
-    GL(PFNGLBINDBUFFERPROC, glBindBuffer)(GL_SHADER_STORAGE_BUFFER, buffer);
-    GL(PFNGLBUFFERDATAPROC, glBufferData)
-    (GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(bytes), data, GL_DYNAMIC_READ);
-    GL(PFNGLBINDBUFFERBASEPROC, glBindBufferBase)(GL_SHADER_STORAGE_BUFFER, binding, buffer);
-    return buffer;
-}
-
-/// The uniform block of a form, if it has one, at binding 0.
-void uploadBlock(GLuint program, const ShaderJob& job) {
-    const std::vector<float> numbers = blockNumbers(job);
-    if (numbers.empty()) return;
-    GLuint buffer = 0;
-    GL(PFNGLGENBUFFERSPROC, glGenBuffers)(1, &buffer);
-    GL(PFNGLBINDBUFFERPROC, glBindBuffer)(GL_UNIFORM_BUFFER, buffer);
-    GL(PFNGLBUFFERDATAPROC, glBufferData)
-    (GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(numbers.size() * 4), numbers.data(),
-     GL_STATIC_DRAW);
-    GL(PFNGLBINDBUFFERBASEPROC, glBindBufferBase)(GL_UNIFORM_BUFFER, 0, buffer);
-    const GLuint at =
-        GL(PFNGLGETUNIFORMBLOCKINDEXPROC, glGetUniformBlockIndex)(program, "hsh_Block");
-    GL(PFNGLUNIFORMBLOCKBINDINGPROC, glUniformBlockBinding)(program, at, 0);
-}
-
-std::vector<float> components(const std::vector<Direction>& directions) {
-    std::vector<float> result;
-    for (const Direction& d : directions)
-        for (const double v : {d.x, d.y, d.z}) result.push_back(static_cast<float>(v));
-    return result;
-}
-
-}  // namespace
-
-std::vector<float> runOpenGl(const ShaderJob& job, const std::string& source) {
-    const Context context(false);
-    uploadBlock(link({compile(GL_COMPUTE_SHADER, source)}), job);
-    upload(0, job.payload.coefficients, job.levels);
-    if (job.payload.basisTexels) upload(2, *job.payload.basisTexels);
-    uploadHarmonics(5, job);
-    const std::vector<float> inputs = inputNumbers(job);
-    std::vector<float> outputs(job.pairs.wo.size() * job.outputs());
-    storage(3, inputs.size() * 4, inputs.data());
-    storage(4, outputs.size() * 4, nullptr);
+std::vector<float> compute(const BoundShader& shader) {
+    Objects objects;
+    addShader(GL_COMPUTE_SHADER, shader.program, objects);
+    upload(shader, link(objects), objects);
+    GL(PFNGLENABLEPROC, glEnable)(GL_TEXTURE_CUBE_MAP_SEAMLESS);
     GL(PFNGLDISPATCHCOMPUTEPROC, glDispatchCompute)
-    (static_cast<GLuint>(job.pairs.wo.size() / 64), 1, 1);
+    (static_cast<GLuint>(shader.invocations / 64), 1, 1);
     GL(PFNGLMEMORYBARRIERPROC, glMemoryBarrier)(GL_BUFFER_UPDATE_BARRIER_BIT);
+    std::vector<float> outputs(shader.invocations * shader.outputs);
+    GL(PFNGLBINDBUFFERPROC, glBindBuffer)(GL_SHADER_STORAGE_BUFFER, objects.output);
     GL(PFNGLGETBUFFERSUBDATAPROC, glGetBufferSubData)
     (GL_SHADER_STORAGE_BUFFER, 0, static_cast<GLsizeiptr>(outputs.size() * 4), outputs.data());
     checkErrors("compute shader");
     return outputs;
 }
 
-std::vector<float> runOpenGlEs(const ShaderJob& job, const std::string& source) {
-    constexpr int side = Pairs::side;
-    const Context context(true);
-    const std::string corners =
-        "#version 300 es\nvoid main() { gl_Position = vec4(float(gl_VertexID % 2) * 4.0 - 1.0, "
-        "float(gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0); }\n";
-    const GLuint program =
-        link({compile(GL_VERTEX_SHADER, corners), compile(GL_FRAGMENT_SHADER, source)});
-    upload(0, job.payload.coefficients, job.levels);
-    uploadBlock(program, job);
-    setSampler(program, job.places.empty() ? "hsh_coefficients" : "hsh_map", 0);
-    if (job.payload.basisTexels) upload(1, *job.payload.basisTexels);
-    setSampler(program, job.places.empty() ? "hsh_basis" : "hsh_shared", 1);
-    uploadNumbers(2, side, side, components(job.pairs.wo));
-    setSampler(program, "wos", 2);
-    uploadNumbers(3, side, side, components(job.pairs.wi));
-    setSampler(program, "wis", 3);
-    const int slots = job.environment.order * job.environment.order;
-    std::vector<float> lights;
-    for (std::size_t i = 0; i < job.lights(); ++i)
-        for (std::size_t j = 0; j < static_cast<std::size_t>(slots); ++j)
-            lights.push_back(static_cast<float>(job.environment.values[j * job.lights() + i]));
-    if (!lights.empty()) uploadNumbers(4, slots, static_cast<int>(job.lights()), lights);
-    setSampler(program, "lights", 4);
-    const std::vector<float> places(job.places.begin(), job.places.end());
-    if (!places.empty()) uploadNumbers(6, side, side, places);
-    setSampler(program, "places", 6);
-    uploadHarmonics(7, job);
-    setSampler(program, "hsh_harmonics", 7);
-
+/// Four float targets of a square, bound for drawing.
+std::array<GLenum, 4> bindTargets(int side, Objects& objects) {
     GLuint frame = 0;
     GL(PFNGLGENFRAMEBUFFERSPROC, glGenFramebuffers)(1, &frame);
+    objects.frames.push_back(frame);
     GL(PFNGLBINDFRAMEBUFFERPROC, glBindFramebuffer)(GL_FRAMEBUFFER, frame);
     std::array<GLenum, 4> targets{};
     for (GLenum k = 0; k < 4; ++k) {
         targets[k] = GL_COLOR_ATTACHMENT0 + k;
-        const GLuint texture = newTexture(5, GL_TEXTURE_2D, GL_NEAREST);
+        const GLuint texture = newTexture(unitOfTargets, GL_TEXTURE_2D, GL_NEAREST, objects);
         GL(PFNGLTEXIMAGE2DPROC, glTexImage2D)
         (GL_TEXTURE_2D, 0, GL_RGBA32F, side, side, 0, GL_RGBA, GL_FLOAT, nullptr);
         GL(PFNGLFRAMEBUFFERTEXTURE2DPROC, glFramebufferTexture2D)
@@ -263,17 +254,140 @@ std::vector<float> runOpenGlEs(const ShaderJob& job, const std::string& source) 
         GL_FRAMEBUFFER_COMPLETE)
         throw Missing("OpenGL ES renders into no float targets");
     GL(PFNGLVIEWPORTPROC, glViewport)(0, 0, side, side);
+    return targets;
+}
+
+std::vector<float> draw(const BoundShader& shader) {
+    const int side = static_cast<int>(std::lround(std::sqrt(shader.invocations)));
+    Objects objects;
+    addShader(GL_VERTEX_SHADER,
+              "#version 300 es\nvoid main() { gl_Position = vec4(float(gl_VertexID % 2) * 4.0 - "
+              "1.0, float(gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0); }\n",
+              objects);
+    addShader(GL_FRAGMENT_SHADER, shader.program, objects);
+    const GLuint program = link(objects);
+    upload(shader, program, objects);
+    for (const auto& [name, unit] : esSamplers) {
+        const GLint at = GL(PFNGLGETUNIFORMLOCATIONPROC, glGetUniformLocation)(program, name);
+        if (at >= 0) GL(PFNGLUNIFORM1IPROC, glUniform1i)(at, unit);
+    }
+    const std::array<GLenum, 4> targets = bindTargets(side, objects);
     GL(PFNGLDRAWARRAYSPROC, glDrawArrays)(GL_TRIANGLES, 0, 3);
-    std::vector<float> outputs(side * side * job.outputs()), pixels(side * side * 4);
+    std::vector<float> outputs(shader.invocations * shader.outputs), pixels(shader.invocations * 4);
     for (std::size_t k = 0; k < 4; ++k) {
         GL(PFNGLREADBUFFERPROC, glReadBuffer)(targets[k]);
         GL(PFNGLREADPIXELSPROC, glReadPixels)(0, 0, side, side, GL_RGBA, GL_FLOAT, pixels.data());
-        for (std::size_t p = 0; p < side * side; ++p)
-            for (std::size_t i = 4 * k; i < std::min(4 * k + 4, job.outputs()); ++i)
-                outputs[p * job.outputs() + i] = pixels[p * 4 + i - 4 * k];
+        for (std::size_t p = 0; p < shader.invocations; ++p)
+            for (std::size_t i = 4 * k; i < std::min(4 * k + 4, shader.outputs); ++i)
+                outputs[p * shader.outputs + i] = pixels[p * 4 + i - 4 * k];
     }
     checkErrors("fragment shader");
     return outputs;
+}
+
+bool has(const char* words, std::string_view word) {
+    return words != nullptr && std::string_view(words).find(word) != std::string_view::npos;
+}
+
+/// The displays that need no window: those of devices, GPUs first, and Mesa's for its renderer in
+/// software.
+std::vector<EGLDisplay> displays(Choice kind) {
+    const auto getDisplay = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(
+        eglGetProcAddress("eglGetPlatformDisplayEXT"));
+    if (getDisplay == nullptr) throw Missing("EGL has no platform displays");
+    std::vector<EGLDisplay> found;
+    const auto queryDevices =
+        reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(eglGetProcAddress("eglQueryDevicesEXT"));
+    const auto queryText = reinterpret_cast<PFNEGLQUERYDEVICESTRINGEXTPROC>(
+        eglGetProcAddress("eglQueryDeviceStringEXT"));
+    std::array<EGLDeviceEXT, 16> devices{};
+    EGLint count = 0;
+    if (kind != Choice::software && queryDevices != nullptr && queryText != nullptr &&
+        queryDevices(static_cast<EGLint>(devices.size()), devices.data(), &count) != EGL_FALSE) {
+        for (EGLint k = 0; k < count; ++k) {
+            const EGLDeviceEXT device = devices[static_cast<std::size_t>(k)];
+            if (!has(queryText(device, EGL_EXTENSIONS), "EGL_MESA_device_software"))
+                found.push_back(getDisplay(EGL_PLATFORM_DEVICE_EXT, device, nullptr));
+        }
+    }
+    if (kind != Choice::gpu)
+        found.push_back(getDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr));
+    return found;
+}
+
+}  // namespace
+
+struct GlContext::Parts {
+    Api api;
+    EGLDisplay display = EGL_NO_DISPLAY;
+    EGLContext context = EGL_NO_CONTEXT;
+    std::string renderer = {};
+    bool software = false;
+
+    Parts(Api of, Choice kind) : api(of) {
+        for (const EGLDisplay one : displays(kind))
+            if (open(one, kind)) return;
+        const std::string name(apiName(api));
+        throw Missing(kind == Choice::gpu ? "no GPU with " + name + " through EGL"
+                                          : "no " + name +
+                                                " through EGL (libegl1, "
+                                                "libgl1-mesa-dri)");
+    }
+    Parts(const Parts&) = delete;
+    Parts& operator=(const Parts&) = delete;
+    ~Parts() { close(); }
+
+    void makeCurrent() const {
+        if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_FALSE)
+            throw std::runtime_error("EGL: the context is lost");
+    }
+
+private:
+    bool open(EGLDisplay one, Choice kind) {
+        EGLint major = 0, minor = 0;
+        if (one == EGL_NO_DISPLAY || eglInitialize(one, &major, &minor) == EGL_FALSE) return false;
+        display = one;
+        const bool es = api == Api::openGlEs;
+        eglBindAPI(es ? EGL_OPENGL_ES_API : EGL_OPENGL_API);
+        const EGLint wanted[] = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE,
+                                 es ? EGL_OPENGL_ES3_BIT : EGL_OPENGL_BIT, EGL_NONE};
+        EGLConfig config = nullptr;
+        EGLint count = 0;
+        eglChooseConfig(display, wanted, &config, 1, &count);
+        const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION, es ? 3 : 4, EGL_CONTEXT_MINOR_VERSION,
+                                  es ? 0 : 5, EGL_NONE};
+        if (count > 0) context = eglCreateContext(display, config, EGL_NO_CONTEXT, version);
+        if (context != EGL_NO_CONTEXT &&
+            eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) != EGL_FALSE) {
+            renderer =
+                reinterpret_cast<const char*>(GL(PFNGLGETSTRINGPROC, glGetString)(GL_RENDERER));
+            software = has(renderer.c_str(), "llvmpipe") || has(renderer.c_str(), "softpipe");
+            if (!software || kind != Choice::gpu) return true;
+        }
+        close();
+        return false;
+    }
+    void close() {
+        if (display == EGL_NO_DISPLAY) return;
+        eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+        if (context != EGL_NO_CONTEXT) eglDestroyContext(display, context);
+        eglTerminate(display);
+        display = EGL_NO_DISPLAY;
+        context = EGL_NO_CONTEXT;
+    }
+};
+
+GlContext::GlContext(Api api, Choice kind) : parts_(std::make_unique<Parts>(api, kind)) {}
+GlContext::~GlContext() = default;
+const std::string& GlContext::renderer() const {
+    return parts_->renderer;
+}
+bool GlContext::software() const {
+    return parts_->software;
+}
+std::vector<float> GlContext::run(const BoundShader& shader) const {
+    parts_->makeCurrent();
+    return parts_->api == Api::openGlEs ? draw(shader) : compute(shader);
 }
 
 }  // namespace hshfit::shaders

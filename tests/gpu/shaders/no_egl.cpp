@@ -1,13 +1,23 @@
-#include "runners.h"
+#include "bound_shader.h"
 
 namespace hshfit::shaders {
 
-std::vector<float> runOpenGl(const ShaderJob&, const std::string&) {
+struct GlContext::Parts {
+    std::string renderer;
+};
+
+GlContext::GlContext(Api, gpu::DeviceChoice::Kind) {
     throw Missing("built without EGL (libegl-dev, libgl-dev, libopengl-dev)");
 }
-
-std::vector<float> runOpenGlEs(const ShaderJob&, const std::string&) {
-    throw Missing("built without EGL (libegl-dev, libgl-dev, libopengl-dev)");
+GlContext::~GlContext() = default;
+const std::string& GlContext::renderer() const {
+    return parts_->renderer;
+}
+bool GlContext::software() const {
+    return true;
+}
+std::vector<float> GlContext::run(const BoundShader&) const {
+    return {};
 }
 
 }  // namespace hshfit::shaders

@@ -1,28 +1,16 @@
 #pragma once
 
+#include "bound_shader.h"
+#include "kept_shader.h"
 #include "shader_job.h"
-
-#include <hshfit/gpu/vulkan/compute.h>
 
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace hshfit::shaders {
-
-/// A tool, library or device is missing: the test skips with this reason.
-struct Missing : std::runtime_error {
-    using std::runtime_error::runtime_error;
-};
-
-/// A compiler or validator refused a shader, with its message.
-struct Refused : std::runtime_error {
-    using std::runtime_error::runtime_error;
-};
 
 /// The inputs of a job as compute shaders take them: wo and wi of every pair (6 numbers), then the
 /// environment.
@@ -34,6 +22,27 @@ std::vector<float> blockNumbers(const ShaderJob& job);
 
 /// The software device; with HSHFIT_TEST_GPU set, a GPU. Throws Missing where there is none.
 std::unique_ptr<gpu::ComputeDevice> vulkanDevice(bool validate);
+
+/// Runs a shader on the device of its interface: the software renderer, or with HSHFIT_TEST_GPU set
+/// a GPU. Throws Missing where there is none.
+std::vector<float> runHere(const BoundShader& shader);
+/// Where HSHFIT_KEEP_SHADERS names a folder, writes the shader that ran last there.
+void keepLast(const std::string& kind, gpu::Language language, const std::string& name,
+              const Wanted& wanted, const Bounds& bounds);
+
+/// A function to be timed: a snippet in GLSL and an expression of type vec3.
+struct TimedCall {
+    int place = 0;  ///< of its row in the table
+    std::string name, snippet;
+    std::string before = {};  ///< declarations
+    /// Of wo and wi in the local frame, or of the normal n and the viewer in the world; `material`
+    /// is a number below 8.
+    std::string call = "hsh_eval(wo, wi)";
+};
+/// Where HSHFIT_KEEP_SHADERS names a folder, writes a shader there that evaluates the call as often
+/// as its input says, for every pixel of a square (tests/gpu/device/timed.mustache). `resources`
+/// are those of the snippet.
+void keepTimed(const TimedCall& timed, std::vector<gpu::ComputeResource> resources);
 
 /// Vulkan: texture arrays at bindings 0 (coefficients) and 2 (basis), combined with their sampler
 /// or not (then at 1), storage buffers at 3 (input) and 4 (output).

@@ -189,24 +189,42 @@ std::vector<double> reference(const ShaderJob& job) {
     return result;
 }
 
-Difference compare(const ShaderJob& job, std::span<const double> expected,
-                   std::span<const float> found) {
-    Difference difference;
-    double evalMost = 0, shadeMost = 0;
+Wanted wantedOf(const ShaderJob& job, std::span<const double> expected) {
+    const auto isShade = [&](std::size_t i) { return i % job.outputs() >= 2 * job.channels(); };
+    double eval = 0, shade = 0;
     for (std::size_t i = 0; i < expected.size(); ++i) {
         if (std::isnan(expected[i])) continue;
-        const bool shade = i % job.outputs() >= 2 * job.channels();
-        // A NaN counts as infinitely far.
-        double d = std::abs(static_cast<double>(found[i]) - expected[i]);
-        if (!(d < 1e30)) d = 1e30;
-        double& worst = shade ? difference.shade : difference.eval;
-        double& most = shade ? shadeMost : evalMost;
-        worst = std::max(worst, d);
+        double& most = isShade(i) ? shade : eval;
         most = std::max(most, std::abs(expected[i]));
     }
-    difference.eval /= evalMost;
-    difference.shade /= shadeMost;
-    return difference;
+    Wanted wanted{{expected.begin(), expected.end()}, {}};
+    for (std::size_t i = 0; i < expected.size(); ++i)
+        wanted.scales.push_back(isShade(i) ? shade : eval);
+    return wanted;
+}
+
+Wanted writtenTwice(const ShaderJob& job, std::span<const double> values,
+                    std::span<const double> scales) {
+    const std::size_t channels = job.channels();
+    Wanted wanted{std::vector<double>(job.pairs.wo.size() * job.outputs(), std::nan("")), {}};
+    wanted.scales.assign(wanted.values.size(), 1);
+    for (std::size_t k = 0; k < job.pairs.wo.size(); ++k) {
+        for (std::size_t i = 0; i < 2 * channels; ++i) {
+            wanted.values[k * job.outputs() + i] = values[k * channels + i % channels];
+            wanted.scales[k * job.outputs() + i] = scales[k * channels + i % channels];
+        }
+    }
+    return wanted;
+}
+
+Difference compare(const ShaderJob& job, std::span<const double> expected,
+                   std::span<const float> found) {
+    Wanted eval = wantedOf(job, expected), shade = eval;
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        Wanted& other = i % job.outputs() < 2 * job.channels() ? shade : eval;
+        other.values[i] = std::nan("");
+    }
+    return {largestDifference(eval, found), largestDifference(shade, found)};
 }
 
 }  // namespace hshfit::shaders

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "kept_shader.h"
+
 #include <hshfit/brdf/directions.h>
 #include <hshfit/gpu/payload.h>
 #include <hshfit/gpu/shader.h>
@@ -66,6 +68,13 @@ ShaderJob makeJob(gpu::Payload payload, int environmentOrder);
 /// of its own), shade as a quadrature of the reconstruction times the light, for every seventh
 /// pair; NaN for the others, which `compare` leaves out.
 std::vector<double> reference(const ShaderJob& job);
+
+/// The reference relative to the largest magnitude, of eval and shade each.
+Wanted wantedOf(const ShaderJob& job, std::span<const double> expected);
+
+/// Values [pair][channel], which a shader writes as evalRaw and as eval; any light will do.
+Wanted writtenTwice(const ShaderJob& job, std::span<const double> values,
+                    std::span<const double> scales);
 
 /// Largest difference, of the largest magnitude, of eval and shade each.
 struct Difference {

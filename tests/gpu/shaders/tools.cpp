@@ -216,6 +216,32 @@ std::string wrapped(gpu::Language language, const ShaderJob& job, const std::str
     return wrapper.render(page);
 }
 
+void keepTimed(const TimedCall& timed, std::vector<gpu::ComputeResource> resources) {
+    const char* folder = std::getenv("HSHFIT_KEEP_SHADERS");
+    if (folder == nullptr) return;
+    constexpr std::size_t side = 1024;
+    kainjow::mustache::data page;
+    page.set("snippet", timed.snippet);
+    page.set("before", timed.before);
+    page.set("call", timed.call);
+    page.set("side", std::to_string(side));
+    kainjow::mustache::mustache text(textOf(here.parent_path() / "device/timed.mustache"));
+    text.set_custom_escape([](const std::string& s) { return s; });
+    const std::vector<std::uint32_t> words = toSpirv(gpu::Language::glsl, text.render(page));
+    resources.push_back({.binding = 3, .numbers = {1}});
+    resources.push_back({.binding = 4, .count = side * side});
+    keepShader(
+        folder,
+        {.kind = timedKind,
+         .language = "glsl",
+         .name = fmt::format("{:02} {}", timed.place, timed.name),
+         .shader = {.api = Api::vulkan,
+                    .program = {reinterpret_cast<const char*>(words.data()), 4 * words.size()},
+                    .resources = std::move(resources),
+                    .invocations = side * side,
+                    .outputs = 1}});
+}
+
 std::vector<float> run(gpu::Language language, const ShaderJob& job, const std::string& source) {
     switch (language) {
         case gpu::Language::glslEs:
