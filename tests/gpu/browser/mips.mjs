@@ -6,6 +6,7 @@ import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { read } from 'ktx-parse';
 import { decoded, expect, finish, here, withBrowser } from './browser.mjs';
+import { levelNumbers, levelSize, normalOf, widths } from './mip_numbers.mjs';
 
 const [driver, program] = [process.argv[2], resolve(process.argv[3])];
 const folder = mkdtempSync(join(tmpdir(), 'hshfit-mips-'));
@@ -55,28 +56,6 @@ function decode({ format, sizes, levels }) {
   });
 }
 
-const half = (bits) => {
-  const [e, m] = [(bits >> 10) & 31, bits & 1023];
-  return (bits & 0x8000 ? -1 : 1) * (e === 0 ? m * 2 ** -24 : (1 + m / 1024) * 2 ** (e - 15));
-};
-
-// The numbers of a texel of the map: docs/explanation/filtered_maps.md.
-function mapNumbers(file, level, texel) {
-  const { pixelWidth, pixelHeight, levels } = file;
-  const count = Math.max(1, pixelWidth >> level) * Math.max(1, pixelHeight >> level);
-  const words = new Uint16Array(levels[level].levelData.slice().buffer);
-  return (k) => half(words[(Math.floor(k / 4) * count + texel) * 4 + (k % 4)]);
-}
-
-// The smaller width, of the lobe's squares and twice the variance of slopes. Both are stored as deviations along
-// x and y with their correlation between.
-function shorterWidth(number) {
-  const squares = (first) => [number(first) ** 2, number(first) * number(first + 1) * number(first + 2), number(first + 2) ** 2];
-  const [spread, lobe] = [squares(5), squares(8)];
-  const [xx, xy, yy] = spread.map((value, k) => lobe[k] + 2 * value);
-  return Math.sqrt(Math.min(1, Math.max(0, (xx + yy) / 2 - Math.hypot((xx - yy) / 2, xy))));
-}
-
 await finish(async () => {
   try {
     const maps = join(here, '../../../examples/maps');
@@ -91,7 +70,7 @@ await finish(async () => {
       for (const [role, format, vulkan] of [['normal', 'bc5', BC5], ['roughness', 'bc7', BC7]]) {
         const file = open(`material.${role}.ktx2`);
         expect(file.vkFormat === vulkan && file.levels.length === map.levels.length, `${role}: format ${file.vkFormat}`);
-        const sizes = file.levels.map((_, k) => [Math.max(1, file.pixelWidth >> k), Math.max(1, file.pixelHeight >> k)]);
+        const sizes = file.levels.map((_, k) => levelSize(file, k));
         const levels = file.levels.map(({ levelData }) => Buffer.from(levelData).toString('base64'));
         const found = await page.evaluate(decode, { format, sizes, levels });
         if (!found) {
@@ -100,17 +79,18 @@ await finish(async () => {
         }
         let worst = 0;
         found.forEach((text, level) => {
-          const texels = decoded(text, Float32Array);
+          const texels = decoded(text, Float32Array),
+            numbers = levelNumbers(map, level);
           for (let texel = 0; texel < texels.length / 4; ++texel) {
-            const number = mapNumbers(map, level, texel);
+            const number = numbers(texel);
             if (role === 'roughness') {
-              worst = Math.max(worst, Math.abs(texels[4 * texel + 1] - Math.sqrt(shorterWidth(number))));
+              worst = Math.max(worst, Math.abs(texels[4 * texel + 1] - Math.sqrt(widths(number).shorter)));
               continue;
             }
             const [x, y] = [0, 1].map((c) => 2 * texels[4 * texel + c] - 1);
             const seen = [x, y, Math.sqrt(Math.max(0, 1 - x * x - y * y))],
-              right = [0, 1, 2].map(number);
-            const cosine = seen.reduce((sum, value, c) => sum + value * right[c], 0) / Math.hypot(...right);
+              right = normalOf(number);
+            const cosine = seen.reduce((sum, value, c) => sum + value * right[c], 0);
             worst = Math.max(worst, (180 / Math.PI) * Math.acos(Math.min(1, cosine)));
           }
         });

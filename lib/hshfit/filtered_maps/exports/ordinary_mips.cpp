@@ -60,8 +60,10 @@ double anisotropyError(const BlockTexel& found, const BlockTexel& wanted) {
 }
 
 /// A direction and its opposite are the same: each texel takes that nearer to the common axis, so
-/// that blocks and filters seldom mix opposites.
-void alignDirections(std::vector<OrdinaryTexel>& texels) {
+/// that blocks and filters seldom mix opposites. The axis itself is taken on the side of `before`,
+/// the axis of the level before, because filters mix levels too; it is returned.
+std::array<double, 2> alignDirections(std::vector<OrdinaryTexel>& texels,
+                                      const std::array<double, 2>& before) {
     double x = 0, y = 0;
     for (const OrdinaryTexel& texel : texels) {
         const auto& [c, s] = texel.direction;
@@ -69,9 +71,13 @@ void alignDirections(std::vector<OrdinaryTexel>& texels) {
         y += texel.strength() * 2 * c * s;
     }
     const double angle = std::atan2(y, x) / 2;
-    for (OrdinaryTexel& texel : texels)
-        if (texel.direction[0] * std::cos(angle) + texel.direction[1] * std::sin(angle) < 0)
-            texel.direction = {-texel.direction[0], -texel.direction[1]};
+    std::array<double, 2> axis{std::cos(angle), std::sin(angle)};
+    const auto alongside = [](std::array<double, 2>& one, const std::array<double, 2>& other) {
+        if (one[0] * other[0] + one[1] * other[1] < 0) one = {-one[0], -one[1]};
+    };
+    alongside(axis, before);
+    for (OrdinaryTexel& texel : texels) alongside(texel.direction, axis);
+    return axis;
 }
 
 struct Kind {
@@ -145,6 +151,7 @@ std::vector<OrdinaryMips> writeOrdinaryMips(const FilteredMap& map, const std::s
                                             FileSet& files) {
     Levels levels;
     bool brushed = false;
+    std::array<double, 2> axis{0, 0};
     for (std::size_t level = 0; level < map.sidecar().levels.size(); ++level) {
         const LevelSize& size = map.sidecar().levels[level];
         std::vector<OrdinaryTexel>& texels = levels.emplace_back();
@@ -153,7 +160,7 @@ std::vector<OrdinaryMips> writeOrdinaryMips(const FilteredMap& map, const std::s
                 texels.push_back(ordinaryTexel(map.numbers(level, column, row)));
                 brushed = brushed || texels.back().strength() > leastStrength;
             }
-        alignDirections(texels);
+        axis = alignDirections(texels, axis);
     }
     const Kind kinds[] = {{"normal", Blocks::bc5, normalTexel, normalError},
                           {"roughness", Blocks::bc7, roughnessTexel, roughnessError},
