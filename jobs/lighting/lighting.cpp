@@ -280,7 +280,8 @@ LightingExport exportLighting(const std::string& path, const std::string& folder
                 {"rows",
                  {{"count", how.rows},
                   {"least_cosine", lighting::ElevationRows::leastCosine},
-                  {"formula", "row = (count - 1) sqrt((1 - cos(theta_o)) / (1 - least_cosine))"}}},
+                  {"formula",
+                   "row = (count - 1) sqrt((1 - sqrt(cos(theta_o))) / (1 - sqrt(least_cosine)))"}}},
                 {"models", Json::array()}};
     describeAzimuths(tables, document);
     for (const LightingModel* model : models) {

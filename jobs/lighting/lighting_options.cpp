@@ -30,8 +30,8 @@ constexpr OptionRow lightingRows[] = {
     OptionRow{"lobes",
               at<&LightingExportOptions::errors, &LightingErrorOptions::tables,
                  &LightingTableOptions::lobes>,
-              "Of --lighting prefiltered, lookups besides the diffuse one, 1 to 3"}
-        .within(Bounds<int>{1, 3})
+              "Of --lighting prefiltered, lookups besides the diffuse one, 1 to 6"}
+        .within(Bounds<int>{1, lighting::PrefilteredTable::mostLobes})
         .onlyFor(exports::lighting),
     OptionRow{"seconds", at<&LightingExportOptions::errors, &LightingErrorOptions::seconds>,
               "Of --lighting, end the measuring of errors after that time, with the lights that "

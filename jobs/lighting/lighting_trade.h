@@ -23,10 +23,10 @@ struct LightingTrade {
 struct LightingTradeOptions {
     std::string models = "all";  ///< selectLightingModels
     LightingErrorOptions errors = {};
-    std::vector<int> orders = {3, 5, 8};             ///< of coefficients
-    std::vector<std::size_t> faces = {16, 32, 128};  ///< of split sums, at most
-    std::vector<std::size_t> tiles = {16, 64, 256};  ///< of transformed cosines
-    std::vector<std::size_t> lobes = {1, 2, 3};      ///< of prefiltered environments
+    std::vector<int> orders = {3, 5, 8};               ///< of coefficients
+    std::vector<std::size_t> faces = {16, 32, 128};    ///< of split sums, at most
+    std::vector<std::size_t> tiles = {16, 64, 256};    ///< of transformed cosines
+    std::vector<std::size_t> lobes = {1, 2, 3, 4, 6};  ///< of prefiltered environments
 };
 OptionRows<LightingTradeOptions> lightingTradeOptions();
 

@@ -12,6 +12,7 @@ std::vector<PlannedLighting> planLighting(const plan::Scene& scene, const std::s
                                           bool byTime, const Listener& listener) {
     selectLightingModels(models);
     LightingTradeOptions options{.models = models};
+    options.lobes = {1, 2, 3};  // fits of more take too long for scenes of many materials
     options.errors.given = {{scene.file, scene.lights}};
     std::vector<PlannedLighting> planned;
     for (const plan::Material& material : scene.materials) {

@@ -194,20 +194,20 @@ TEST_F(Lighting, PrefilteredEnvironmentsTakeAnyBrdf) {
     const std::string out = " -o " + path("out");
     const Answer answer =
         run("export ggx:alpha=.4,F0=.9/.6/.3+lambert:kd=.1" + out +
-            " --lighting prefiltered --engine filament --lobes 3 --target glsl,wgsl --light "
+            " --lighting prefiltered --engine filament --lobes 5 --target glsl,wgsl --light "
             "sky:type=12,elevation=40 --json");
     ASSERT_EQ(answer.code, 0) << answer.err;
     EXPECT_EQ(answer.err, "");
     EXPECT_TRUE(keepsSchema(answer.out, "lighting"));
     const Json model = Json::parse(answer.out)["models"][0];
     EXPECT_EQ(model["engine"], "filament");
-    EXPECT_EQ(model["lobes"], 3);
-    EXPECT_EQ(model["bytes"], 32 * 5 * 16);
+    EXPECT_EQ(model["lobes"], 5);
+    EXPECT_EQ(model["bytes"], 32 * 8 * 16);
     EXPECT_EQ(model["light_bytes"], 0);
     const std::string shader = read(path("out/ggx_hsh_prefiltered.glsl"));
     EXPECT_NE(shader.find("#ifndef HSH_PREFILTERED_LIGHT"), std::string::npos);
     EXPECT_NE(shader.find("return 4.0 * r * (2.0 - r);"), std::string::npos);
-    // Three lobes see a glossy metal under every light of the catalog but single suns.
+    // Five lobes see a glossy metal under every light of the catalog but single suns.
     for (const Json& error : Json::parse(answer.out)["errors"]) {
         const std::string light = error["light"];
         if (light.rfind("sky", 0) == 0 || light.rfind("preetham", 0) == 0) {
@@ -225,7 +225,7 @@ TEST_F(Lighting, BadInputIsRefused) {
                 2, "40 bands", 1);
     expectError("export lambert" + out + " --lighting prefiltered --engine unrael", 2,
                 "did you mean 'unreal'", 1);
-    expectError("export lambert" + out + " --lighting prefiltered --lobes 4", 2, "1 to 3", 1);
+    expectError("export lambert" + out + " --lighting prefiltered --lobes 7", 2, "1 to 6", 1);
     expectError("export " + path("plain.json") + out + " --lobes 2", 2, "is for --lighting", 1);
     expectError("export lambert" + out + " --lighting ltc --engine unity", 2,
                 "--lighting prefiltered", 1);

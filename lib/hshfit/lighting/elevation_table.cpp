@@ -8,11 +8,12 @@ namespace hshfit::lighting {
 
 double ElevationRows::cosine(std::size_t row) const {
     const double u = static_cast<double>(row) / static_cast<double>(count - 1);
-    return 1 - (1 - leastCosine) * u * u;
+    return std::pow(1 - span() * u * u, 2);
 }
 
 ElevationRows::Place ElevationRows::place(double cosine) const {
-    const double u = std::sqrt(std::clamp((1 - cosine) / (1 - leastCosine), 0.0, 1.0));
+    const double root = std::sqrt(std::max(0.0, cosine));
+    const double u = std::sqrt(std::clamp((1 - root) / span(), 0.0, 1.0));
     const double position = u * static_cast<double>(count - 1);
     const auto row = std::min(static_cast<std::size_t>(position), count - 2);
     return {row, position - static_cast<double>(row)};

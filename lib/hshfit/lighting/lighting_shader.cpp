@@ -134,12 +134,19 @@ void setLobes(const LightingShader& shader, data& page) {
     for (std::size_t k = 0; k < shader.lobes; ++k) {
         data lobe;
         lobe.set("k", std::to_string(k + 1));
-        lobe.set("letter", std::string(1, "xyz"[k]));
+        lobe.set("lean", fmt::format("lean{}.{}", k / 4, "xyzw"[k % 4]));
         lobe.set("axis", std::to_string(shader.lobes + 1 + k));
         lobes.push_back(lobe);
     }
     page.set("lobes", lobes);
-    page.set("places", std::to_string(shader.lobes + 1));
+    data leans{data::type::list};
+    for (std::size_t k = 0; k < shader.lobes; k += 4) {
+        data lean;
+        lean.set("k", std::to_string(k / 4));
+        lean.set("column", std::to_string(shader.lobes + 1 + k / 4));
+        leans.push_back(lean);
+    }
+    page.set("leans", leans);
     page.set("engine", std::string(shader.engine->name));
     page.set("level", fmt::format(fmt::runtime(shader.engine->formula),
                                   fmt::format("{}.0", shader.engine->levels - 1)));
@@ -178,7 +185,7 @@ std::string lightingShaderSource(Language language, const LightingShader& shader
     page.set("rows", std::to_string(shader.rows.count));
     page.set("texels", std::to_string(shader.texels));
     page.set("last", fmt::format("{}.0", shader.rows.count - 1));
-    page.set("span", gpu::shaderNumber(1 - ElevationRows::leastCosine));
+    page.set("span", gpu::shaderNumber(ElevationRows::span()));
     setAskew(shader, page);
     if (prefiltered) setLobes(shader, page);
     if (shader.kind == LightingShader::Kind::coefficients) {

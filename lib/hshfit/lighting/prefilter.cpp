@@ -13,8 +13,6 @@
 namespace hshfit::lighting {
 namespace {
 
-constexpr std::size_t lastFace = 8;
-
 double last(std::size_t levels) {
     return static_cast<double>(levels - 1);
 }
@@ -147,7 +145,8 @@ std::vector<double> lookUpBands(std::span<const std::vector<double>> levels, dou
     return result;
 }
 
-EnvironmentCube prefiltered(const Prefilter& prefilter, std::span<const Light> lights) {
+EnvironmentCube prefiltered(const Prefilter& prefilter, std::span<const Light> lights,
+                            std::size_t lastFace) {
     const std::size_t first = lastFace << (prefilter.levels - 1);
     EnvironmentCube cube;
     cube.levels.push_back(rasterised(lights, first));

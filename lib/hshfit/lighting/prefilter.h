@@ -43,8 +43,10 @@ std::vector<std::vector<double>> levelBands(const Prefilter& prefilter, int band
 /// The same of a lookup at a place among these levels, which mixes the two beside it.
 std::vector<double> lookUpBands(std::span<const std::vector<double>> levels, double place);
 
-/// The engine's cube of the light. The last level has faces of 8 texels, and each before it twice
-/// as many. Level 0 has the mean over each texel, and the others are made from it, as engines do.
-EnvironmentCube prefiltered(const Prefilter& prefilter, std::span<const Light> lights);
+/// The engine's cube of the light. The last level has faces of `lastFace` texels, 8 in engines, and
+/// each before it twice as many. Level 0 has the mean over each texel, and the others are made from
+/// it, as engines do.
+EnvironmentCube prefiltered(const Prefilter& prefilter, std::span<const Light> lights,
+                            std::size_t lastFace = 8);
 
 }  // namespace hshfit::lighting

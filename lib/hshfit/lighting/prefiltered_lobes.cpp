@@ -53,8 +53,56 @@ std::vector<LobeTarget> targetsOf(const Brdf& brdf, const Basis& basis,
 /// A solution for every row, from one whose search was free to both sides.
 struct Chain {
     std::vector<LobeSolution> rows;
-    double left = 0;  ///< the sum of what each row leaves
+    double left = 0;  ///< sums of LobeSearch::leftBy: of rows, and of their neighbours' mean
 };
+
+/// Lobes halfway between those of two rows, as a table interpolates them.
+LobeSolution between(const LobeSolution& a, const LobeSolution& b) {
+    LobeSolution middle = a;
+    const auto mix = [](Rgb& to, const Rgb& other) {
+        for (std::size_t c = 0; c < 3; ++c) to[c] = (to[c] + other[c]) / 2;
+    };
+    mix(middle.diffuse, b.diffuse);
+    for (std::size_t k = 0; k < a.places.size(); ++k) {
+        mix(middle.scales[k], b.scales[k]);
+        LobePlace& place = middle.places[k];
+        const LobePlace& other = b.places[k];
+        place.roughness = (place.roughness + other.roughness) / 2;
+        const Direction sum{place.axis.x + other.axis.x, place.axis.y + other.axis.y,
+                            place.axis.z + other.axis.z};
+        const double length = std::sqrt(dot(sum, sum));
+        place.axis = {sum.x / length, sum.y / length, sum.z / length};
+    }
+    return middle;
+}
+
+void measure(const LobeSearch& search, std::span<const LobeTarget> targets, Chain& chain) {
+    chain.left = 0;
+    for (std::size_t k = 0; k < chain.rows.size(); ++k) {
+        chain.left += search.leftBy(targets[k], chain.rows[k]);
+        if (k == 0 || k + 1 == chain.rows.size()) continue;
+        chain.left += search.leftBy(targets[k], between(chain.rows[k - 1], chain.rows[k + 1]));
+    }
+}
+
+/// The better of a chain and of one whose rows are again searched for near their neighbours' mean,
+/// so that lobes do not leap between two rows.
+Chain smoothed(const LobeSearch& search, std::span<const LobeTarget> targets,
+               const ElevationRows& rows, Chain chain) {
+    constexpr int passes = 2;
+    constexpr double reach = 0.25;
+    Chain other = chain;
+    for (int pass = 0; pass < passes; ++pass) {
+        for (std::size_t k = 1; k + 1 < rows.count; ++k) {
+            const double theta = std::acos(rows.cosine(k));
+            other.rows[k] = search.continued(targets[k], theta,
+                                             between(other.rows[k - 1], other.rows[k + 1]).places,
+                                             theta, reach);
+        }
+    }
+    measure(search, targets, other);
+    return other.left < chain.left ? other : chain;
+}
 
 Chain chainFrom(const LobeSearch& search, std::span<const LobeTarget> targets,
                 const ElevationRows& rows, std::size_t middle, const LobeSolution& first) {
@@ -66,7 +114,7 @@ Chain chainFrom(const LobeSearch& search, std::span<const LobeTarget> targets,
     };
     for (std::size_t k = middle; k-- > 0;) follow(k, k + 1);
     for (std::size_t k = middle + 1; k < rows.count; ++k) follow(k, k - 1);
-    for (const LobeSolution& row : chain.rows) chain.left += row.left;
+    measure(search, targets, chain);
     return chain;
 }
 
@@ -80,8 +128,10 @@ Chain freeChain(const LobeSearch& search, std::span<const LobeTarget> targets,
     std::array<Chain, std::size(startAngles)> chains;
     tbb::parallel_for(std::size_t{0}, chains.size(), [&](std::size_t k) {
         const std::size_t middle = rowAt(rows, startAngles[k]);
-        chains[k] = chainFrom(search, targets, rows, middle,
-                              search.free(targets[middle], std::acos(rows.cosine(middle))));
+        chains[k] =
+            smoothed(search, targets, rows,
+                     chainFrom(search, targets, rows, middle,
+                               search.free(targets[middle], std::acos(rows.cosine(middle)))));
     });
     return *std::ranges::min_element(chains, {}, &Chain::left);
 }
@@ -103,6 +153,18 @@ void writeRow(const LobeSolution& row, bool inPlane, std::span<double> out) {
     }
 }
 
+/// The share of each row in a mean over theta_o, by the trapezoidal rule.
+std::vector<double> angleShares(const ElevationRows& rows) {
+    std::vector<double> shares(rows.count, 0.0);
+    const double whole = std::acos(rows.cosine(rows.count - 1));
+    for (std::size_t k = 0; k + 1 < rows.count; ++k) {
+        const double half =
+            (std::acos(rows.cosine(k + 1)) - std::acos(rows.cosine(k))) / (2 * whole);
+        shares[k] += half, shares[k + 1] += half;
+    }
+    return shares;
+}
+
 }  // namespace
 
 PrefilteredTable fitPrefiltered(const Brdf& brdf, const Prefilter& engine, std::size_t lobes,
@@ -117,11 +179,12 @@ PrefilteredTable fitPrefiltered(const Brdf& brdf, const Prefilter& engine, std::
         throw UsageError(
             fmt::format("{}: lighting takes grey and RGB, not {} channels", brdf.name(), channels));
     const bool inPlane = lobesInPlane(brdf.laws());
-    PrefilteredTable result{.engine = &engine,
-                            .lobes = lobes,
-                            .inPlane = inPlane,
-                            .table = ElevationTable(rows, inPlane ? lobes + 2 : 2 * lobes + 1,
-                                                    AzimuthNodes(brdf.laws(), azimuthSteps))};
+    PrefilteredTable result{
+        .engine = &engine,
+        .lobes = lobes,
+        .inPlane = inPlane,
+        .table = ElevationTable(rows, 1 + lobes + (inPlane ? (lobes + 3) / 4 : lobes),
+                                AzimuthNodes(brdf.laws(), azimuthSteps))};
     const auto basis = bases::make("sh", PrefilteredTable::bands);
     const std::vector<LobeTarget> targets = targetsOf(brdf, *basis, result.table);
     const LobeSearch search(PrefilteredTable::bands, engine, lobes, inPlane);
@@ -164,6 +227,7 @@ double turnedError(const PrefilteredTable& table, std::span<const Light> lights)
             for (std::size_t i = l * l; i < (l + 1) * (l + 1); ++i)
                 weights[c * bands + l] +=
                     light.at(c)[i] * light.at(c)[i] / (2 * static_cast<double>(l) + 1);
+    const std::vector<double> shares = angleShares(table.table.rows);
     double sum = 0;
     for (std::size_t row = 0; row < table.residuals.size(); ++row) {
         double whole = 0, left = 0;
@@ -171,9 +235,9 @@ double turnedError(const PrefilteredTable& table, std::span<const Light> lights)
             whole += weights[i] * table.squares[row * weights.size() + i];
             left += weights[i] * table.left[row * weights.size() + i];
         }
-        sum += whole > 0 ? std::sqrt(left / whole) : 0;
+        sum += whole > 0 ? shares[row % shares.size()] * std::sqrt(left / whole) : 0;
     }
-    return sum / static_cast<double>(table.residuals.size());
+    return sum / static_cast<double>(table.table.azimuths.count);
 }
 
 Rgb radiance(const PrefilteredTable& table, const EnvironmentCube& cube, const Direction& normal,

@@ -19,11 +19,11 @@ namespace hshfit::lighting {
 /// band 0, the albedo, with 100. Light takes no part.
 ///
 /// Texels of a row: R, G, B of d; for each lobe R, G, B of s and r. Where lobes are their own
-/// mirror images (lobesInPlane) one texel follows with the angles of the axes from the normal, away
-/// from the viewer, radians. Else an axis for each lobe follows: its x, y, z in the frame in which
-/// wo has y = 0.
+/// mirror images (lobesInPlane) a texel for every four lobes follows with the angles of the axes
+/// from the normal, away from the viewer, radians. Else an axis for each lobe follows: its x, y, z
+/// in the frame in which wo has y = 0.
 struct PrefilteredTable {
-    static constexpr std::size_t mostLobes = 3;
+    static constexpr std::size_t mostLobes = 6;
     static constexpr int bands = 64;
 
     const Prefilter* engine = nullptr;
@@ -36,14 +36,14 @@ struct PrefilteredTable {
     std::vector<double> squares = {}, left = {};
 };
 
-/// The relative error of the radiance under lights of every turn, the mean over the rows of
+/// The relative error of the radiance under lights of every turn, the mean over theta_o of
 ///     sqrt(sum over l of E_l |D_l|^2 / (2 l + 1) / the same with f in place of D),
 /// E_l the squares of the lights' coefficients of band l, D_l those of f cos(theta_i) less the
 /// lobes, over channels and 64 bands. Between the rows and within texels of cubes nothing is seen.
 double turnedError(const PrefilteredTable& table, std::span<const Light> lights);
 
-/// With 1 to 3 lobes. Throws UsageError for another number and for channels that are not grey or
-/// RGB; NumericError where f is not finite.
+/// With 1 to `mostLobes` lobes. Throws UsageError for another number and for channels that are not
+/// grey or RGB; NumericError where f is not finite.
 PrefilteredTable fitPrefiltered(const Brdf& brdf, const Prefilter& engine, std::size_t lobes,
                                 ElevationRows rows = {},
                                 std::size_t azimuthSteps = AzimuthNodes::defaultSteps);

@@ -182,11 +182,52 @@ TEST(PrefilteredLobes, MoreLobesLeaveLess) {
         },
         {}, plain);
     double before = 1;
-    for (const std::size_t lobes : {1, 2, 3}) {
-        const PrefilteredTable table = fitPrefiltered(brdf, prefilterNamed("unity"), lobes);
+    constexpr std::size_t rows = 12;
+    for (const std::size_t lobes : {1, 2, 3, 6}) {
+        const PrefilteredTable table =
+            fitPrefiltered(brdf, prefilterNamed("unity"), lobes, {.count = rows});
         const double left = std::accumulate(table.residuals.begin(), table.residuals.end(), 0.0);
-        EXPECT_LT(left, 0.9 * before * 32) << lobes;
-        before = left / 32;
+        EXPECT_LT(left, 0.9 * before * rows) << lobes;
+        before = left / rows;
+    }
+}
+
+/// Measured materials brighten steeply towards the horizon, as 1 / cos(theta_o) does.
+TEST(PrefilteredLobes, AlbedosThatRiseAtTheHorizonAreKeptBetweenRows) {
+    const Prefilter& engine = prefilterNamed("three");
+    const auto albedo = [](double cosine) { return 0.02 / (cosine + 0.02); };
+    const test::FormulaBrdf brdf(
+        [&](const Direction&, const Direction& wo) { return albedo(wo.z) / pi; }, {}, plain);
+    const PrefilteredTable table = fitPrefiltered(brdf, engine, 1);
+    for (const double cosine : {0.015, 0.025, 0.04, 0.06, 0.1, 0.3}) {
+        const Direction wo{std::sqrt(1 - cosine * cosine), 0, cosine};
+        EXPECT_NEAR(radiance(table, uniformCube(engine), {0, 0, 1}, wo)[0], albedo(cosine),
+                    0.03 * albedo(cosine))
+            << cosine;
+    }
+}
+
+/// The angles of the fifth and sixth axis are in a texel of their own.
+TEST(PrefilteredLobes, SixLobesInThePlaneOfIncidence) {
+    const test::FormulaBrdf brdf(
+        [](const Direction& wi, const Direction& wo) {
+            const double c = std::max(0.0, dot(wi, mirrored(wo))),
+                         back = std::max(0.0, dot(wi, wo));
+            return 0.05 + std::pow(c, 6) + 6 * std::pow(c, 60) + 3 * std::pow(back, 30);
+        },
+        {}, plain);
+    const PrefilteredTable table = fitPrefiltered(brdf, prefilterNamed("three"), 6, {.count = 16});
+    EXPECT_EQ(table.table.texels, 1U + 6 + 2);
+    const std::vector<Light> lights{linearLight({0.5, 0, 0.2})};
+    const EnvironmentCube cube = prefiltered(*table.engine, lights);
+    for (const double theta : {0.3, 0.8, 1.2}) {
+        const Direction wo = directionFromAngles(theta, 0);
+        const LobeNodes nodes = lobeNodes(brdf, wo, 8);
+        double truth = 0;
+        for (std::size_t i = 0; i < nodes.count(); ++i)
+            truth += nodes.weights[i] * nodes.z[i] * nodes.f[0][i] *
+                     (1 + 0.5 * nodes.x[i] + 0.2 * nodes.z[i]);
+        EXPECT_NEAR(radiance(table, cube, {0, 0, 1}, wo)[0], truth, 0.01 * truth) << theta;
     }
 }
 
@@ -205,16 +246,22 @@ TEST(PrefilteredLobes, TurnedErrorsAreThoseOfTheCoefficients) {
     const std::vector<Light> single{
         DirectionalLight{.towards = {0, 0, 1}, .irradiance = {1, 1, 1}}};
     const std::size_t each = table.left.size() / table.residuals.size();
+    const ElevationRows& rows = table.table.rows;
     double expected = 0;
     for (std::size_t row = 0; row < table.residuals.size(); ++row) {
         // Y_{l,0}(+z)^2 / (2 l + 1) = 1 / (4 pi) in every band.
         const auto from = static_cast<std::ptrdiff_t>(row * each),
                    to = from + static_cast<std::ptrdiff_t>(each);
-        expected += std::sqrt(
-            std::accumulate(table.left.begin() + from, table.left.begin() + to, 0.0) /
-            std::accumulate(table.squares.begin() + from, table.squares.begin() + to, 0.0));
+        // A mean over the angle, by the trapezoidal rule.
+        const double here = std::acos(rows.cosine(row));
+        const double before = row > 0 ? std::acos(rows.cosine(row - 1)) : here;
+        const double after = row + 1 < rows.count ? std::acos(rows.cosine(row + 1)) : here;
+        const double share = (after - before) / 2 / std::acos(ElevationRows::leastCosine);
+        expected += share * std::sqrt(std::accumulate(table.left.begin() + from,
+                                                      table.left.begin() + to, 0.0) /
+                                      std::accumulate(table.squares.begin() + from,
+                                                      table.squares.begin() + to, 0.0));
     }
-    expected /= static_cast<double>(table.residuals.size());
     EXPECT_NEAR(turnedError(table, single), expected, 1e-6 * expected);
 }
 
@@ -245,7 +292,7 @@ TEST(PrefilteredLobes, ABrushedLobeAndItsMirrorImage) {
 
 TEST(PrefilteredLobes, WrongNumbersAreRefused) {
     const test::FormulaBrdf brdf([](const Direction&, const Direction&) { return 0.1; }, {}, plain);
-    for (const std::size_t lobes : {0, 4})
+    for (const std::size_t lobes : {0, 7})
         EXPECT_THROW(fitPrefiltered(brdf, prefilterNamed("three"), lobes), UsageError);
 }
 

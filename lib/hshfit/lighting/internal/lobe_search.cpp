@@ -1,6 +1,7 @@
 #include <hshfit/lighting/internal/lobe_search.h>
 
 #include <hshfit/brdf/vectors.h>
+#include <hshfit/lighting/prefiltered_lobes.h>
 
 #include <Eigen/Cholesky>
 
@@ -11,7 +12,7 @@
 namespace hshfit::lighting {
 namespace {
 
-constexpr std::size_t most = 4;  // lobes and the diffuse one
+constexpr std::size_t most = PrefilteredTable::mostLobes + 1;  // with the diffuse one
 using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most, most>;
 using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most, 1>;
 
@@ -363,6 +364,18 @@ double LobeSearch::selfProduct(std::size_t a, std::size_t b) const {
     return withRidge(selfProducts_[2 * b + (a == b ? 0 : 1)]);
 }
 
+double LobeSearch::leftBy(const LobeTarget& target, const LobeSolution& solution) const {
+    const BandSquares sums = squares(target, solution);
+    double left = 0, whole = 0;
+    for (std::size_t i = 0; i < sums.left.size(); ++i) {
+        const int l = static_cast<int>(i) % bands_;
+        if (l == 0) continue;
+        left += bandWeight(l) * sums.left[i];
+        whole += bandWeight(l) * sums.whole[i];
+    }
+    return whole > 0 ? std::sqrt(left / whole) : 0;
+}
+
 BandSquares LobeSearch::squares(const LobeTarget& target, const LobeSolution& solution) const {
     std::vector<Direction> axes{{0, 0, 1}};
     std::vector<std::vector<double>> bands{levels_.back()};
@@ -421,21 +434,23 @@ LobeSolution LobeSearch::free(const LobeTarget& target, double theta) const {
 }
 
 LobeSolution LobeSearch::continued(const LobeTarget& target, double theta,
-                                   std::span<const LobePlace> places, double before) const {
+                                   std::span<const LobePlace> places, double before,
+                                   double reach) const {
     Row row(*this, target, theta);
     struct Window {
         std::vector<LobePlace> places;
         const Prefilter* engine;
+        double reach;
         std::pair<double, double> levels(std::size_t k) const {
             const double r = places[k].roughness;
-            return {engine->levelOf(std::max(0.0, r - windowRoughness)),
-                    engine->levelOf(std::min(1.0, r + windowRoughness))};
+            return {engine->levelOf(std::max(0.0, r - reach * windowRoughness)),
+                    engine->levelOf(std::min(1.0, r + reach * windowRoughness))};
         }
         bool axis(std::size_t k, const Direction& d) const {
-            return angleBetween(d, places[k].axis) <= radians(windowAngle);
+            return angleBetween(d, places[k].axis) <= reach * radians(windowAngle);
         }
     };
-    Window window{{}, engine_};
+    Window window{{}, engine_, reach};
     std::vector<Standing> lobes;
     for (const LobePlace& place : places) {
         // A lobe goes along with the mirror direction, as far as it leans to it.

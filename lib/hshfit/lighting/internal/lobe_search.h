@@ -68,9 +68,13 @@ public:
     /// the grid's axes.
     LobeSolution free(const LobeTarget& target, double theta) const;
     /// From the lobes of a row beside it at `before`, at most 0.1 in roughness and 12 degrees,
-    /// about the mirror direction, away from them.
+    /// about the mirror direction, away from them; `reach`: the share of these.
     LobeSolution continued(const LobeTarget& target, double theta,
-                           std::span<const LobePlace> places, double before) const;
+                           std::span<const LobePlace> places, double before,
+                           double reach = 1) const;
+    /// The root of the share of the weighted squares, without the albedo's, that lobes leave with
+    /// their scales as they are.
+    double leftBy(const LobeTarget& target, const LobeSolution& solution) const;
 
     BandSquares squares(const LobeTarget& target, const LobeSolution& solution) const;
 
