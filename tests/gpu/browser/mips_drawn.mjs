@@ -138,7 +138,7 @@ async function prepare({ name, material, kinds, levels }) {
     geometry.attributes.uv.needsUpdate = true;
     mesh.material = materials[kind];
     lamp.position.set(...lampAt);
-    const tiles = Math.max(1, (side * samples) / 1024),
+    const tiles = Math.ceil((side * samples) / 1024),
       wide = (side * samples) / tiles,
       own = side / tiles;
     const target = (targets[wide] ??= new three.WebGLRenderTarget(wide, wide, { type: three.FloatType }));
