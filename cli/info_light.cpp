@@ -111,7 +111,7 @@ std::string partsText(const Json& parts, std::size_t chosen) {
     return text;
 }
 
-/// What becomes of a file's primaries; eight zeros state none.
+/// The use of a file's primaries; eight zeros state none.
 std::string primariesText(const Json& xy) {
     constexpr double rec709[] = {.64, .33, .30, .60, .15, .06, .3127, .3290};
     bool none = true, same = true;
