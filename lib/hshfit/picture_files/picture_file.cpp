@@ -83,6 +83,11 @@ const PictureFormat& formatOf(const MappedFile& file) {
     for (const PictureFormat& format : formats) {
         if (starts(head, format)) return format;
     }
+    if (head.starts_with("#?") && head.substr(0, head.find('\n')).ends_with('\r'))
+        throw InputError(
+            fmt::format("{}: the lines of its Radiance header end in CR LF, expected LF; a copy in "
+                        "text mode may have changed the pixels too: copy the file as binary",
+                        file.path()));
     throw InputError(
         fmt::format("{}: of no known picture format; known: OpenEXR, Radiance HDR, "
                     "PNG, JPEG, TIFF, BMP, PNM, PFM",

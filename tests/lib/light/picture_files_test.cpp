@@ -404,6 +404,8 @@ TEST_F(PictureFiles, SizesCurvesAndChannelsThatDoNotFitAreRefused) {
         "OpenEXR cube");
     std::ofstream(path("n.exr")) << "no picture";
     has(path("n.exr"), "of no known picture format");
+    std::ofstream(path("n.hdr")) << "#?RADIANCE\r\nFORMAT=32-bit_rle_rgbe\r\n\r\n-Y 1 +X 2\r\n";
+    has(path("n.hdr"), "end in CR LF, expected LF");
     std::ofstream(path("z.exr")) << "";
     has(path("z.exr"), path("z.exr"));
     has(folder_.string() + "/absent.hdr", "no such file");
