@@ -1,4 +1,5 @@
 #include <brdfs/measured/merl.h>
+#include <brdfs/measured/no_values.h>
 
 #include <cstdint>
 #include <cstring>
@@ -19,10 +20,19 @@ bool looksLikeMerl(std::span<const unsigned char> head, std::uint64_t fileSize) 
            (dimensions[2] == 180 || dimensions[2] == 360);
 }
 
+/// Stops at the first cell that has a value.
+bool hasValues(const MerlBrdf& brdf) {
+    for (std::size_t cell = 0; cell < brdf.layout().cells(); ++cell)
+        if (!(brdf.stored(0, cell) < 0)) return true;
+    return false;
+}
+
 std::unique_ptr<Brdf> openMerl(const std::string& path, const Parameters& parameters) {
     const bool nearest = parameters.choice("interpolation") == "nearest";
-    return std::make_unique<MerlBrdf>(
+    auto brdf = std::make_unique<MerlBrdf>(
         path, nearest ? MerlInterpolation::nearest : MerlInterpolation::linear);
+    if (!hasValues(*brdf)) refuseWithoutValues(brdf->census(), path);
+    return brdf;
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include <brdfs/measured/no_values.h>
 #include <brdfs/measured/pbsdf.h>
 #include <hshfit/error.h>
 #include <hshfit/files/mapped_file.h>
@@ -309,7 +310,9 @@ const Format& pbsdfFormat() {
             },
         .parameters = {muellerParameter()},
         .open = [](const std::string& path, const Parameters& parameters) -> std::unique_ptr<Brdf> {
-            return PbsdfBrdf::open(path, muellerElements(parameters));
+            auto brdf = PbsdfBrdf::open(path, muellerElements(parameters));
+            refuseWithoutValues(brdf->census(), path);
+            return brdf;
         },
     };
     return format;

@@ -1,6 +1,7 @@
 // The header of an MIT file, and the facts about its values.
 
 #include <brdfs/measured/gridded/mit.h>
+#include <brdfs/measured/no_values.h>
 #include <hshfit/checked_product.h>
 #include <hshfit/error.h>
 
@@ -80,6 +81,17 @@ bool looksLikeMit(std::span<const unsigned char> head, std::uint64_t) {
            std::all_of(header.begin(), header.begin() + 4, isBinCount);
 }
 
+/// Whether a bin has no mark. Stops at the first one.
+bool hasValues(std::span<const unsigned char> bytes) {
+    for (std::size_t at = MitLayout::headerBytes; at + sizeof(float) <= bytes.size();
+         at += sizeof(float)) {
+        float value;
+        std::memcpy(&value, bytes.data() + at, sizeof value);
+        if (!(value < 0)) return true;
+    }
+    return false;
+}
+
 }  // namespace
 
 MitBrdf::MitBrdf(std::span<const unsigned char> bytes, std::string name, double scale)
@@ -88,6 +100,7 @@ MitBrdf::MitBrdf(std::span<const unsigned char> bytes, std::string name, double 
 std::unique_ptr<MitBrdf> MitBrdf::open(const std::string& path, double scale) {
     auto file = std::make_unique<MappedFile>(path);
     auto brdf = std::make_unique<MitBrdf>(file->bytes(), path, scale);
+    if (!hasValues(file->bytes())) refuseWithoutValues(brdf->census(), path);
     brdf->file_ = std::move(file);
     return brdf;
 }

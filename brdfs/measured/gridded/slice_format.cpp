@@ -1,6 +1,7 @@
 // Slices from MERL `.slice` files and from pictures.
 
 #include <brdfs/measured/gridded/slice.h>
+#include <brdfs/measured/no_values.h>
 #include <brdfs/measured/text_reader.h>
 #include <hshfit/coefficient_files/coefficient_formats.h>
 #include <hshfit/error.h>
@@ -210,6 +211,7 @@ std::unique_ptr<Brdf> openSlice(const std::string& path, const Parameters&) {
     try {
         auto brdf = read(file.bytes(), path);
         file.checkIntact();
+        refuseWithoutValues(brdf->census(), path);
         return brdf;
     } catch (const InputError&) {
         file.checkIntact();  // reports a file that was removed or cut while it was read
