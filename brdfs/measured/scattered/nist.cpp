@@ -14,6 +14,17 @@ namespace hshfit::brdfs {
 namespace {
 
 constexpr std::string_view beginning = "lambda,thetai,phi";
+
+/// The character between the cells, by the first two names: a comma, a semicolon or a tab; 0 for
+/// other text.
+char nistSeparator(std::string_view text) {
+    for (const char separator : {',', ';', '\t'}) {
+        std::string names(beginning);
+        std::ranges::replace(names, ',', separator);
+        if (text.starts_with(names)) return separator;
+    }
+    return 0;
+}
 constexpr std::size_t columnCount = 21;
 
 /// Polar and azimuth angles of both directions in degrees, rounded to the resolution of
@@ -31,7 +42,7 @@ struct Reading {
 };
 
 bool looksLikeNist(std::span<const unsigned char> head, std::uint64_t) {
-    return asText(head).starts_with(beginning);
+    return nistSeparator(asText(head)) != 0;
 }
 
 /// The elements of a row, whose matrix begins at its sixth number and has f_r11 in place of m_11.
@@ -75,7 +86,8 @@ void addRow(const std::vector<double>& row, const MuellerElements& elements,
 
 Samples readNist(std::string_view text, const std::string& where, const MuellerElements& elements) {
     TextReader reader(text, where);
-    if (!reader.next() || !reader.line().starts_with(beginning)) {
+    const char separator = reader.next() ? nistSeparator(reader.line()) : 0;
+    if (separator == 0) {
         throw reader.error(fmt::format("expected the names of the columns, '{},...'", beginning));
     }
     std::map<Geometry, std::size_t> known;
@@ -84,7 +96,7 @@ Samples readNist(std::string_view text, const std::string& where, const MuellerE
     std::vector<double> row;
     while (reader.next()) {
         if (reader.blank()) continue;
-        reader.takeNumbers(row, ',');
+        reader.takeNumbers(row, separator);
         if (row.size() != columnCount) {
             throw reader.error(fmt::format("{} numbers, expected {}", row.size(), columnCount));
         }
