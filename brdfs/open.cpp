@@ -129,7 +129,10 @@ std::unique_ptr<Brdf> openFile(const std::string& path, std::string_view options
     const std::uint64_t size = fs::file_size(path, error);
     if (error) throw InputError(fmt::format("{}: {}", path, error.message()));
     if (size == 0) throw InputError(path + ": is empty");
-    const std::vector<unsigned char> head = readHead(path, headBytes);
+    const std::vector<unsigned char> bytes = readHead(path, headBytes);
+    const std::string_view marked(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const std::size_t mark = marked.size() - withoutByteOrderMark(marked).size();
+    const auto head = std::span(bytes).subspan(mark);
     refuseForeign(path, head, true);
     const Format* format = recognisedFormat(head, size);
     const std::string extension = fs::path(path).extension().string();

@@ -46,6 +46,18 @@ constexpr Magic magics[] = {
     {"PAR1", "a Parquet file; export the table as CSV"},
 };
 
+/// Whether the text begins with the byte-order mark of UTF-16, and every other byte is 0 as in
+/// Latin letters and digits.
+bool isUtf16(std::string_view text) {
+    const bool little = text.starts_with("\xff\xfe"), big = text.starts_with("\xfe\xff");
+    if (!little && !big) return false;
+    constexpr std::size_t most = 32;
+    const std::size_t end = std::min(text.size() & ~std::size_t{1}, most);
+    for (std::size_t k = 2; k + 1 < end; k += 2)
+        if (text[little ? k : k + 1] == 0 || text[little ? k + 1 : k] != 0) return false;
+    return end > 2;
+}
+
 std::optional<std::string> archiveOf(std::string_view text) {
     if (!text.starts_with("PK\x03\x04")) return std::nullopt;
     if (text.find("[Content_Types].xml") != std::string_view::npos ||
@@ -109,6 +121,11 @@ std::optional<std::string> programOf(std::string_view text, std::string_view low
 
 }  // namespace
 
+std::string_view withoutByteOrderMark(std::string_view text) {
+    constexpr std::string_view mark = "\xef\xbb\xbf";
+    return text.starts_with(mark) ? text.substr(mark.size()) : text;
+}
+
 bool isPlainText(std::span<const unsigned char> head) {
     return std::ranges::none_of(head, [](unsigned char c) {
         return (c < 32 && c != '\t' && c != '\n' && c != '\r' && c != '\f') || c == 127;
@@ -123,6 +140,7 @@ std::optional<std::string> foreignContent(std::span<const unsigned char> head, b
     if (certain) return std::nullopt;
     for (const Magic& magic : magics)
         if (text.starts_with(magic.bytes)) return std::string(magic.what);
+    if (isUtf16(text)) return "text in UTF-16; save it as UTF-8";
     if (auto archive = archiveOf(text)) return archive;
     if (beginsAsJson(text))
         return "JSON of another program; tables of OpenMATERIAL (.xompt) and this program's own "

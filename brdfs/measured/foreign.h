@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace hshfit::brdfs {
 
@@ -12,6 +13,9 @@ namespace hshfit::brdfs {
 /// nothing known. `certain`: web pages alone, which may quote a format; to be asked before the
 /// formats.
 std::optional<std::string> foreignContent(std::span<const unsigned char> head, bool certain);
+
+/// The text behind a byte-order mark of UTF-8 (EF BB BF), which Windows programs put before it.
+std::string_view withoutByteOrderMark(std::string_view text);
 
 /// Whether the bytes are text: no control characters but white space.
 bool isPlainText(std::span<const unsigned char> head);

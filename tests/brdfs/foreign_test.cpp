@@ -6,11 +6,13 @@
 
 #include <brdfs/catalog.h>
 #include <brdfs/measured/scattered/alta.h>
+#include <brdfs/measured/scattered/scattered.h>
 #include <brdfs/measured_files.h>
 #include <hshfit/error.h>
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <string>
@@ -62,14 +64,14 @@ TEST(Foreign, TextUnderExtensionsOfBytesAndTheOtherWayRound) {
     refused("just some words\n", ".unknown", {"known: merl"});
 }
 
+const std::string zemaxText =
+    "# own\nSource  Measured\nSymmetry  PlaneSymmetrical\nSpectralContent  Monochrome\n"
+    "ScatterType  BRDF\nSampleRotation  1\n0\nAngleOfIncidence  1\n10\nScatterAzimuth 2\n0 180\n"
+    "ScatterRadial 2\n0 90\nMonochrome\nDataBegin\nTIS 0.1\n0.03 0.03\n0.03 0.03\nDataEnd\n";
+
 TEST(Foreign, ContentComesBeforeTheExtension) {
-    const std::string zemax =
-        "# own\nSource  Measured\nSymmetry  PlaneSymmetrical\nSpectralContent  Monochrome\n"
-        "ScatterType  BRDF\nSampleRotation  1\n0\nAngleOfIncidence  1\n10\nScatterAzimuth 2\n0 "
-        "180\n"
-        "ScatterRadial 2\n0 90\nMonochrome\nDataBegin\nTIS 0.1\n0.03 0.03\n0.03 0.03\nDataEnd\n";
     const std::string rows[] = {
-        zemax, "Incident_angle,Measure_angle,550nm\n10,-10,0.5\n10,10,0.9\n",
+        zemaxText, "Incident_angle,Measure_angle,550nm\n10,-10,0.5\n10,10,0.9\n",
         "{\"brdf\":{\"wavelengths\":[5.5e-07],\"lookupTable\":[[5.5e-07,0.0,0.0,0.0,0.3]]}}",
         "type bsdf_data\nformat angles=deg bsdf=value scale=1\n10 0\n10 0 0.5\n",
         "VARS theta_i,theta_s,BRDF\n0.1,0.1,0.5\n"};
@@ -80,6 +82,75 @@ TEST(Foreign, ContentComesBeforeTheExtension) {
             const auto brdf = open(file.path());
             EXPECT_EQ(std::get<std::string>(brdf->facts()[0].second), formats[k]) << extension;
         }
+}
+
+/// Windows programs put a byte-order mark before text in UTF-8.
+TEST(Foreign, AByteOrderMarkChangesNothing) {
+    const std::string alta = "#DIM 2 1\n#PARAM_IN RUSIN_TH_TD\n0.1 0.2 0.5\n0.2 0.3 0.4\n";
+    const std::string nist =
+        "lambda,thetai,phi\n0.5,10,180,20,0,0.3,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0\n";
+    const std::string texts[] = {
+        zemaxText,
+        alta,
+        nist,
+        "type bsdf_data\nformat angles=deg bsdf=value scale=1\n10 0\n10 0 0.5\n",
+        "OPTIS - brdf surface file v8.0\n0\nown\n4\nabcd\n1 0\n1\n1 1\n30\n500\n20\n3 3\n0 180 "
+        "360\n"
+        "0 1 1 1\n45 1 1 1\n90 1 1 1\nEnd of file\n",
+        "Incident_angle,Measure_angle,550nm\n10,-10,0.5\n10,10,0.9\n",
+        "VARS theta_i,theta_s,BRDF\n0.1,0.1,0.5\n"};
+    for (const std::string& text : texts) {
+        SCOPED_TRACE(text.substr(0, 20));
+        const TemporaryFile plain(text, ".txt"), marked("\xef\xbb\xbf" + text, ".txt");
+        const auto a = open(plain.path()), b = open(marked.path());
+        EXPECT_EQ(a->facts()[0], b->facts()[0]);
+        EXPECT_EQ(measuredPairs(*a)->samples.values, measuredPairs(*b)->samples.values);
+    }
+}
+
+TEST(Foreign, Utf16IsNamed) {
+    const std::string text = "theta_i,theta_o,brdf\n10,20,0.5\n";
+    std::string little = "\xff\xfe", big = "\xfe\xff";
+    for (const char c : text) {
+        little += {c, '\0'};
+        big += {'\0', c};
+    }
+    for (const char* extension : {".csv", ".txt", ".unknown"}) {
+        refused(little, extension, {"UTF-16", "save it as UTF-8"});
+        refused(big, extension, {"UTF-16", "save it as UTF-8"});
+    }
+}
+
+TEST(Foreign, RowsOfNistMayBeSeparatedBySemicolonsOrTabs) {
+    const std::string commas =
+        "lambda,thetai,phi\n0.5,10,180,20,0,0.3,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0\n";
+    for (const char separator : {';', '\t'}) {
+        std::string text = commas;
+        std::ranges::replace(text, ',', separator);
+        const TemporaryFile file(text, ".csv");
+        const auto brdf = open(file.path());
+        EXPECT_EQ(brdf->facts()[0], Fact("format", "nist"));
+        EXPECT_EQ(measuredPairs(*brdf)->samples.values, std::vector<double>{0.3});
+    }
+}
+
+/// A file in which every value has the mark of a direction that was not measured.
+TEST(Foreign, TablesWithoutAMeasurementAreRefused) {
+    const std::vector<float> marks(3 * 90 * 90, -1.0F);
+    std::string slice(marks.size() * sizeof(float), '\0');
+    std::memcpy(slice.data(), marks.data(), slice.size());
+    const TemporaryFile none(slice, ".slice");
+    test::expectInputError([&] { open(none.path()); }, {none.path(), "no value was measured"});
+    const float measured = 0.1F;
+    for (std::size_t c = 0; c < 3; ++c)
+        std::memcpy(slice.data() + c * sizeof measured, &measured, sizeof measured);
+    const TemporaryFile one(slice, ".slice");
+    EXPECT_NO_THROW(open(one.path()));
+    const TemporaryFile merl(test::merlFile([](int, int, int, int) { return -1.0; }), ".binary");
+    test::expectInputError([&] { open(merl.path()); }, {merl.path(), "no value was measured"});
+    const TemporaryFile some(
+        test::merlFile([](int, int h, int, int) { return h == 0 ? 0.1 : -1.0; }), ".binary");
+    EXPECT_NO_THROW(open(some.path()));
 }
 
 /// The doubles of rows as ALTA writes them.

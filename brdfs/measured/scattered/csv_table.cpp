@@ -1,3 +1,4 @@
+#include <brdfs/measured/foreign.h>
 #include <brdfs/measured/scattered/csv_table.h>
 #include <brdfs/measured/scattered/text_file.h>
 #include <brdfs/measured/text_reader.h>
@@ -21,11 +22,6 @@ constexpr std::size_t mostLinesBefore = 200;
 bool isRemark(std::string_view line) {
     line = withoutBlanks(line);
     return line.starts_with('#') || line.starts_with('%') || line.starts_with("//");
-}
-
-std::string_view withoutMark(std::string_view text) {
-    constexpr std::string_view mark = "\xef\xbb\xbf";
-    return text.starts_with(mark) ? text.substr(mark.size()) : text;
 }
 
 /// A line of names may be a remark itself: "# theta_i theta_o brdf".
@@ -106,7 +102,7 @@ void findNames(TextReader& reader, const std::string& where, SampleTable& table)
 }
 
 SampleTable rowsOf(std::string_view text, const std::string& where) {
-    TextReader reader(withoutMark(text), where);
+    TextReader reader(withoutByteOrderMark(text), where);
     SampleTable table;
     findNames(reader, where, table);
     std::vector<std::string_view> cells;
@@ -141,7 +137,7 @@ double nanometresOf(const TableRow& row, const TableColumns& columns, const Row&
 }  // namespace
 
 bool hasNamedColumns(std::string_view text) {
-    TextReader reader(withoutMark(text), "");
+    TextReader reader(withoutByteOrderMark(text), "");
     while (reader.next() && reader.lineNumber() <= mostLinesBefore)
         if (namesDirections(namesOfLine(reader.line()))) return true;
     return false;

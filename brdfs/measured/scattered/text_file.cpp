@@ -1,3 +1,4 @@
+#include <brdfs/measured/foreign.h>
 #include <brdfs/measured/scattered/scattered.h>
 #include <brdfs/measured/scattered/text_file.h>
 #include <hshfit/files/mapped_file.h>
@@ -10,7 +11,8 @@ void withTextFile(const std::string& path,
                   const std::function<void(std::string_view, const std::string&)>& read) {
     const MappedFile file(path);
     try {
-        read({reinterpret_cast<const char*>(file.data()), file.size()}, path);
+        const std::string_view text(reinterpret_cast<const char*>(file.data()), file.size());
+        read(withoutByteOrderMark(text), path);
     } catch (const InputError&) {
         file.checkIntact();
         throw;
