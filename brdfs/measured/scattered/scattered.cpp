@@ -147,11 +147,29 @@ double scaleOf(const Parameters& parameters) {
     return parameters.number("scale") * (factor ? 1 / pi : 1);
 }
 
+Parameter zerosParameter() {
+    return {.name = "zeros",
+            .help = "meaning of values of exactly 0 above the horizon",
+            .kind = Parameter::Kind::choice,
+            .choices = {"unmeasured", "values"}};
+}
+
+bool zerosAreMeasured(const Parameters& parameters) {
+    return parameters.choice("zeros") == "values";
+}
+
+std::string zerosLeftOut(std::size_t count) {
+    return fmt::format("{} values of 0 above the horizon (option zeros)", count);
+}
+
 Scattered::Scattered(Samples samples, const ScatteredOptions& options, std::string name)
     : samples_(std::move(samples)), options_(options), name_(std::move(name)) {
     if (samples_.size() == 0) {
-        throw InputError(fmt::format("{}: no sample is above the horizon ({} are below it)", name_,
-                                     samples_.census.belowHorizon / samples_.channels.count()));
+        const bool parts = !samples_.leftOut.empty();
+        throw InputError(
+            fmt::format("{}: no sample is above the horizon ({} are below it{}{})", name_,
+                        samples_.census.belowHorizon / samples_.channels.count(),
+                        parts ? "; not read: " : "", fmt::join(samples_.leftOut, "; ")));
     }
     if (options_.scale != 1) samples_.scale(options_.scale);
     const MuellerElements& elements = samples_.elements;

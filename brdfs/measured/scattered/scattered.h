@@ -34,6 +34,12 @@ ScatteredOptions scatteredOptions(const Parameters& parameters);
 /// f over the values of the file: by `scale` and `quantity`.
 double scaleOf(const Parameters& parameters);
 
+/// The option `zeros` of formats that have no mark for directions without a measurement but 0.
+Parameter zerosParameter();
+bool zerosAreMeasured(const Parameters& parameters);
+/// The remark on `count` values of 0 that were left out.
+std::string zerosLeftOut(std::size_t count);
+
 /// A BRDF interpolated between scattered samples: `ScatterInterpolant` in the coordinates of
 /// `Chart`. Within `reach` of the nearest sample (or of its image under the symmetries) f is
 /// interpolated and coverage() is 1; from there to 1.5 reach it fades to 0; beyond it is 0.

@@ -57,8 +57,13 @@ std::pair<double, double> shares(double a, double b, bool withCosine) {
 
 class SpeosReader {
 public:
-    SpeosReader(std::string_view text, const std::string& where, std::string_view side)
-        : where_(where), reader_(text, where), numbers_(reader_, text.size()), side_(side) {}
+    SpeosReader(std::string_view text, const std::string& where, std::string_view side,
+                bool zerosMeasured)
+        : where_(where),
+          reader_(text, where),
+          numbers_(reader_, text.size()),
+          side_(side),
+          zerosMeasured_(zerosMeasured) {}
 
     Samples read();
 
@@ -75,13 +80,16 @@ private:
     double scaleAt(double incidence, const std::vector<double>& incidences,
                    const std::vector<SpeosTable>& tables);
     void addTable(double anisotropy, double incidence, const SpeosTable& first,
-                  const std::vector<std::vector<double>>& channels, Samples& samples);
+                  const std::vector<std::vector<double>>& channels,
+                  const std::vector<unsigned char>& unmeasured, Samples& samples);
 
     const std::string& where_;
     TextReader reader_;
     NumberLines numbers_;
     std::string_view side_;
-    bool through_ = false;  ///< transmission is read
+    bool zerosMeasured_;
+    std::size_t zeros_ = 0;  ///< left out
+    bool through_ = false;   ///< transmission is read
     bool anisotropic_ = false, reflects_ = false, transmits_ = false, ofBsdf_ = false;
 };
 
@@ -203,7 +211,8 @@ double SpeosReader::integral(const SpeosTable& table) const {
 }
 
 void SpeosReader::addTable(double anisotropy, double incidence, const SpeosTable& first,
-                           const std::vector<std::vector<double>>& channels, Samples& samples) {
+                           const std::vector<std::vector<double>>& channels,
+                           const std::vector<unsigned char>& unmeasured, Samples& samples) {
     const double turn = -radians(anisotropy);
     const Direction wi = directionFromAngles(radians(incidence), pi + turn);
     const std::size_t phis = first.phis.size();
@@ -225,7 +234,10 @@ void SpeosReader::addTable(double anisotropy, double incidence, const SpeosTable
                 }
                 for (double& value : f) value /= wo.z;
             }
-            samples.add(wi, wo, f, at);
+            if (unmeasured[t * phis + p] && !zerosMeasured_)
+                ++zeros_;
+            else
+                samples.add(wi, wo, f, at);
         }
 }
 
@@ -242,6 +254,7 @@ void SpeosReader::readSpectral(Samples& samples) {
     for (const double incidence : angles) {
         SpeosTable first;
         std::vector<std::vector<double>> channels;
+        std::vector<unsigned char> unmeasured;
         for (std::size_t c = 0; c < wavelengths; ++c) {
             double percent = 0;
             SpeosTable table = takeWanted(&percent);
@@ -257,11 +270,14 @@ void SpeosReader::readSpectral(Samples& samples) {
                     fmt::format("the angles at {} nm are not those at {} nm; expected the same",
                                 nanometres[c], nanometres[0]));
             const double scale = percent > 0 ? percent / 100 / whole : 0;
+            if (c == 0) unmeasured.assign(table.values.size(), 1);
+            for (std::size_t k = 0; k < table.values.size(); ++k)
+                if (percent == 0 || table.values[k] != 0) unmeasured[k] = 0;
             channels.push_back(table.values);
             for (double& value : channels.back()) value *= scale;
             if (c == 0) first = std::move(table);
         }
-        addTable(0, incidence, first, channels, samples);
+        addTable(0, incidence, first, channels, unmeasured, samples);
     }
 }
 
@@ -345,7 +361,9 @@ void SpeosReader::readAnisotropic(Samples& samples) {
             std::vector<std::vector<double>> channels(shares.size(), tables[i].values);
             for (std::size_t c = 0; c < shares.size(); ++c)
                 for (double& value : channels[c]) value *= shares[c] * scale;
-            addTable(angles[k], incidences[k][i], tables[i], channels, samples);
+            std::vector<unsigned char> unmeasured;
+            for (const double value : tables[i].values) unmeasured.push_back(value == 0);
+            addTable(angles[k], incidences[k][i], tables[i], channels, unmeasured, samples);
         }
     }
 }
@@ -363,6 +381,7 @@ Samples SpeosReader::read() {
     if (reflects_ && transmits_)
         samples.leftOut.emplace_back(through_ ? "reflection (option side)"
                                               : "transmission (option side)");
+    if (zeros_ > 0) samples.leftOut.push_back(zerosLeftOut(zeros_));
     samples.side = side_ == sideWords[3] ? sideWords[3] : through_ ? sideWords[2] : sideWords[0];
     return samples;
 }
@@ -374,8 +393,9 @@ bool looksLikeSpeos(std::span<const unsigned char> head, std::uint64_t) {
 
 }  // namespace
 
-Samples readSpeos(std::string_view text, const std::string& where, std::string_view side) {
-    return SpeosReader(text, where, side).read();
+Samples readSpeos(std::string_view text, const std::string& where, std::string_view side,
+                  bool zerosMeasured) {
+    return SpeosReader(text, where, side, zerosMeasured).read();
 }
 
 const Format& speosFormat() {
@@ -390,13 +410,15 @@ const Format& speosFormat() {
               .help = "light comes from the front, unless stated otherwise; auto: reflection, or "
                       "transmission where the file has no other",
               .kind = Parameter::Kind::choice,
-              .choices = {"auto", "reflection-front", "transmission-front", "transmission-back"}}}),
+              .choices = {"auto", "reflection-front", "transmission-front", "transmission-back"}},
+             zerosParameter()}),
         .open =
             [](const std::string& path, const Parameters& parameters) {
                 const std::string side = parameters.choice("side");
+                const bool zeros = zerosAreMeasured(parameters);
                 return openScattered(path, parameters,
                                      [&](std::string_view text, const std::string& where) {
-                                         return readSpeos(text, where, side);
+                                         return readSpeos(text, where, side, zeros);
                                      });
             },
     };

@@ -24,9 +24,11 @@ namespace hshfit::brdfs {
 ///
 /// Polar angles from 90 to 180 degrees tell tables of transmission from those of reflection, in
 /// whatever order they come. `side`: "reflection-front", "transmission-front" or, by the user's
-/// word, "transmission-back"; "auto": reflection, or transmission where there is no other. Throws
+/// word, "transmission-back"; "auto": reflection, or transmission where there is no other. Entries
+/// of 0 in all wavelengths are directions that were not measured, unless `zerosMeasured`. Throws
 /// InputError, with `where` and the line, for other content and binary files.
-Samples readSpeos(std::string_view text, const std::string& where, std::string_view side = "auto");
+Samples readSpeos(std::string_view text, const std::string& where, std::string_view side = "auto",
+                  bool zerosMeasured = false);
 
 /// The row of the table of formats.
 const Format& speosFormat();

@@ -199,9 +199,7 @@ Samples ZemaxReader::read(bool zerosMeasured) {
                      {"symmetry", head_.mirrored ? "plane" : "none"},
                      {"scatter_type", head_.through ? "BTDF" : "BRDF"},
                      {"tis", fmt::format("{:.4g} to {:.4g}, not applied", least, most)}};
-    if (zeros_ > 0)
-        samples.leftOut.push_back(
-            fmt::format("{} values of 0 above the horizon (option zeros)", zeros_));
+    if (zeros_ > 0) samples.leftOut.push_back(zerosLeftOut(zeros_));
     return samples;
 }
 
@@ -231,7 +229,7 @@ Samples readZemax(std::string_view text, const std::string& where, bool zerosMea
 namespace {
 
 std::unique_ptr<Brdf> openZemax(const std::string& path, const Parameters& parameters) {
-    const bool zerosMeasured = parameters.choice("zeros") == "values";
+    const bool zerosMeasured = zerosAreMeasured(parameters);
     Samples samples;
     withTextFile(path, [&](std::string_view text, const std::string& where) {
         samples = readZemax(text, where, zerosMeasured);
@@ -264,10 +262,7 @@ const Format& zemaxFormat() {
                                   .help = "of the light of a BTDF; auto: of a BTDF, front",
                                   .kind = Parameter::Kind::choice,
                                   .choices = {"auto", "transmission-front", "transmission-back"}},
-                                 {.name = "zeros",
-                                  .help = "meaning of values of exactly 0 above the horizon",
-                                  .kind = Parameter::Kind::choice,
-                                  .choices = {"unmeasured", "values"}}}),
+                                 zerosParameter()}),
         .open = openZemax,
     };
     return format;
