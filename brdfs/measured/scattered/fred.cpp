@@ -96,10 +96,8 @@ const Format& fredFormat() {
         .extension = ".txt",
         .recognises = looksLikeFred,
         .parameters = scatteredParameters(),
-        .open =
-            [](const std::string& path, const Parameters& parameters) {
-                return openScattered(path, parameters, readFred);
-            },
+        .open = [](const std::string& path,
+                   const Parameters& parameters) { return openTables(path, parameters, readFred); },
     };
     return format;
 }

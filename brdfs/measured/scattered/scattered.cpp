@@ -1,4 +1,6 @@
+#include <brdfs/measured/scattered/angle_tables.h>
 #include <brdfs/measured/scattered/scattered.h>
+#include <brdfs/measured/scattered/table_interpolant.h>
 #include <hshfit/brdf/channel_view.h>
 #include <hshfit/error.h>
 
@@ -211,32 +213,72 @@ Scattered::Scattered(Samples samples, const ScatteredOptions& options, std::stri
         images_ = same;
         laws_.reciprocal = false;
     }
+    if (options_.tables != ScatteredOptions::Tables::none) interpolateOnTables();
     if (ofPairs) lobes_ = sampleLobes(samples_);
 }
 
-void Scattered::eval(const Direction& wo, DirectionBatch wi, double* out) const {
+Scattered::~Scattered() = default;
+
+void Scattered::interpolateOnTables() {
+    const bool isotropic = chart_ == Chart::isotropic;
+    // The tables of an anisotropic sample are not folded at its axes.
+    if (!isotropic && (chart_ != Chart::anisotropic || folding_.mirror)) return;
+    const bool aboutMirror = options_.tables == ScatteredOptions::Tables::aboutMirror;
+    const std::vector<AngleTable> tables = tablesOf(samples_, aboutMirror, isotropic);
+    if (!TableInterpolant::suits(tables, isotropic)) return;
+    std::vector<double> values = samples_.values;
+    const std::size_t channels = samples_.channels.count();
+    const MuellerElements& elements = samples_.elements;
+    for (std::size_t k = 0; k < values.size(); ++k)
+        if (elements.isPositive(k % channels * elements.size() / channels))
+            values[k] = std::max(0.0, values[k]);
+    const TableInterpolant::Options options{
+        .isotropic = isotropic, .mirror = folding_.mirror, .reach = options_.reach};
+    onTables_ = std::make_unique<TableInterpolant>(tables, values, channels, options);
+    laws_.reciprocal = false;
+}
+
+void Scattered::evalScattered(const Point& at, double* out, std::size_t stride,
+                              ScatterInterpolant::Trail& trail) const {
     const double limit = 1.5 * options_.reach;
+    const double away = interpolant_->evaluate(at, limit, out, stride, &trail);
+    if (away <= options_.reach || away > limit) return;
+    const double t = (limit - away) / (limit - options_.reach);
+    const double fade = t * t * (3 - 2 * t);
+    for (std::size_t c = 0; c < samples_.channels.count(); ++c) out[c * stride] *= fade;
+}
+
+void Scattered::eval(const Direction& wo, DirectionBatch wi, double* out) const {
     const std::size_t channels = samples_.channels.count();
     ScatterInterpolant::Trail trail;
+    std::vector<double> onTables(onTables_ ? channels : 0);
     for (std::size_t k = 0; k < wi.count; ++k) {
-        if (!(wi.z[k] > 0) || !(wo.z > 0)) {
+        const Direction in{wi.x[k], wi.y[k], wi.z[k]};
+        if (!(in.z > 0) || !(wo.z > 0)) {
             for (std::size_t c = 0; c < channels; ++c) out[c * wi.count + k] = 0;
             continue;
         }
-        const Point at = folded(chartPoint(chart_, {wi.x[k], wi.y[k], wi.z[k]}, wo), images_);
-        const double away = interpolant_->evaluate(at, limit, out + k, wi.count, &trail);
-        if (away <= options_.reach || away > limit) continue;
-        const double t = (limit - away) / (limit - options_.reach);
-        const double fade = t * t * (3 - 2 * t);
-        for (std::size_t c = 0; c < channels; ++c) out[c * wi.count + k] *= fade;
+        const double weight = onTables_ ? onTables_->evaluate(in, wo, onTables.data(), 1) : 0;
+        if (weight < 1)
+            evalScattered(folded(chartPoint(chart_, in, wo), images_), out + k, wi.count, trail);
+        for (std::size_t c = 0; c < onTables.size(); ++c) {
+            double& f = out[c * wi.count + k];
+            f = weight < 1 ? f + weight * (onTables[c] - f) : onTables[c];
+        }
     }
 }
 
 void Scattered::coverage(const Direction& wo, DirectionBatch wi, unsigned char* covered) const {
+    std::vector<double> onTables(samples_.channels.count());
     for (std::size_t k = 0; k < wi.count; ++k) {
         covered[k] = 0;
-        if (!(wi.z[k] > 0) || !(wo.z > 0)) continue;
-        const Point at = folded(chartPoint(chart_, {wi.x[k], wi.y[k], wi.z[k]}, wo), images_);
+        const Direction in{wi.x[k], wi.y[k], wi.z[k]};
+        if (!(in.z > 0) || !(wo.z > 0)) continue;
+        if (onTables_ && onTables_->evaluate(in, wo, onTables.data(), 1) >= 1) {
+            covered[k] = 1;
+            continue;
+        }
+        const Point at = folded(chartPoint(chart_, in, wo), images_);
         covered[k] = interpolant_->nearest(at) <= options_.reach;
     }
 }
@@ -319,7 +361,8 @@ std::optional<MeasuredPairs> measuredPairs(const Brdf& brdf) {
 std::vector<Fact> Scattered::facts() const {
     std::vector<Fact> facts = samples_.facts;
     facts.emplace_back("samples", static_cast<std::int64_t>(samples_.size()));
-    facts.emplace_back("interpolated_over", std::string(chartName(chart_)));
+    facts.emplace_back("interpolated_over",
+                       onTables_ ? "the tables of the file" : std::string(chartName(chart_)));
     facts.emplace_back("nodes", static_cast<std::int64_t>(interpolant_->nodes()));
     facts.emplace_back("exchanged", folding_.exchange);
     facts.emplace_back("mirrored", folding_.mirror);

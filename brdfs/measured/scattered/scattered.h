@@ -8,12 +8,15 @@
 #include <brdfs/rows/spec.h>
 #include <hshfit/projection/least_squares.h>
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace hshfit::brdfs {
+
+class TableInterpolant;
 
 /// The assumed symmetries of scattered samples. None: those stated in the file or else implied
 /// by its directions. Samples are isotropic if all incident or all outgoing directions have one
@@ -24,6 +27,10 @@ struct ScatteredOptions {
     bool exchange = true;  ///< a sample stands for the exchanged pair, unless that was measured
     double reach = radians(10);  ///< distance from a sample within which f rests on it
     double scale = 1;            ///< f over the values of the file
+    /// The pole of the angles that the tables of a format are over, if it has tables
+    /// (angle_tables.h).
+    enum class Tables { none, aboutNormal, aboutMirror };
+    Tables tables = Tables::none;
 };
 
 /// The options `isotropic`, `mirror`, `exchange`, `reach`, `scale` and `quantity` of every
@@ -40,6 +47,11 @@ bool zerosAreMeasured(const Parameters& parameters);
 /// The remark on `count` values of 0 that were left out.
 std::string zerosLeftOut(std::size_t count);
 
+/// As openScattered (text_file.h) for a format of tables about the normal.
+std::unique_ptr<Brdf> openTables(
+    const std::string& path, const Parameters& parameters,
+    const std::function<Samples(std::string_view, const std::string&)>& read);
+
 /// A BRDF interpolated between scattered samples: `ScatterInterpolant` in the coordinates of
 /// `Chart`. Within `reach` of the nearest sample (or of its image under the symmetries) f is
 /// interpolated and coverage() is 1; from there to 1.5 reach it fades to 0; beyond it is 0.
@@ -49,10 +61,15 @@ std::string zerosLeftOut(std::size_t count);
 /// With `exchange`, f is reciprocal exactly, unless samples contradict it: where both orders of a
 /// pair were measured and differ by more than 1e-3, f has the measured value in each order, and
 /// Laws::reciprocal is false.
+///
+/// Where the samples come in tables that TableInterpolant suits, f is interpolated on these
+/// instead, and the former holds past them, where f fades from the one to the other. f is then not
+/// taken as reciprocal.
 class Scattered : public MeasuredBrdf, public HasMeasuredPairs {
 public:
     /// Throws InputError, starting with `name`, if there are no samples above the horizon.
     Scattered(Samples samples, const ScatteredOptions& options, std::string name);
+    ~Scattered() override;
 
     std::string name() const override { return name_; }
     const Channels& channels() const override { return samples_.channels; }
@@ -73,6 +90,11 @@ public:
     std::unique_ptr<Brdf> scaled(double factor, std::string name) const override;
 
 private:
+    void interpolateOnTables();
+    /// f by the scattered samples, fading beyond the reach.
+    void evalScattered(const Point& at, double* out, std::size_t stride,
+                       ScatterInterpolant::Trail& trail) const;
+
     Samples samples_;
     ScatteredOptions options_;
     std::string name_;
@@ -82,6 +104,7 @@ private:
     std::vector<Point> images_;  ///< that f is the same at
     SampleLobes lobes_;
     std::unique_ptr<ScatterInterpolant> interpolant_;
+    std::unique_ptr<TableInterpolant> onTables_;  ///< null for samples in no tables
 };
 
 /// The measured pairs behind a BRDF, without those of the interpolation between them.

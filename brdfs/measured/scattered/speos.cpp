@@ -416,10 +416,10 @@ const Format& speosFormat() {
             [](const std::string& path, const Parameters& parameters) {
                 const std::string side = parameters.choice("side");
                 const bool zeros = zerosAreMeasured(parameters);
-                return openScattered(path, parameters,
-                                     [&](std::string_view text, const std::string& where) {
-                                         return readSpeos(text, where, side, zeros);
-                                     });
+                return openTables(path, parameters,
+                                  [&](std::string_view text, const std::string& where) {
+                                      return readSpeos(text, where, side, zeros);
+                                  });
             },
     };
     return format;

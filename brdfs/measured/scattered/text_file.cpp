@@ -20,15 +20,19 @@ void withTextFile(const std::string& path,
     file.checkIntact();
 }
 
-std::unique_ptr<Brdf> openScattered(
+namespace {
+
+std::unique_ptr<Brdf> openSamples(
     const std::string& path, const Parameters& parameters,
-    const std::function<Samples(std::string_view, const std::string&)>& read) {
+    const std::function<Samples(std::string_view, const std::string&)>& read,
+    ScatteredOptions::Tables tables) {
     Samples samples;
     withTextFile(path, [&](std::string_view text, const std::string& where) {
         samples = read(text, where);
     });
     std::string words = parameters.canonical();
     ScatteredOptions options = scatteredOptions(parameters);
+    options.tables = tables;
     if (!samples.side.empty()) {
         // Directions of a transmission are not exchanged, and its name states its side.
         options.exchange = options.exchange && !samples.side.starts_with("transmission");
@@ -37,6 +41,20 @@ std::unique_ptr<Brdf> openScattered(
     }
     return std::make_unique<Scattered>(std::move(samples), options,
                                        words.empty() ? path : path + ":" + words);
+}
+
+}  // namespace
+
+std::unique_ptr<Brdf> openScattered(
+    const std::string& path, const Parameters& parameters,
+    const std::function<Samples(std::string_view, const std::string&)>& read) {
+    return openSamples(path, parameters, read, ScatteredOptions::Tables::none);
+}
+
+std::unique_ptr<Brdf> openTables(
+    const std::string& path, const Parameters& parameters,
+    const std::function<Samples(std::string_view, const std::string&)>& read) {
+    return openSamples(path, parameters, read, ScatteredOptions::Tables::aboutNormal);
 }
 
 std::string_view asText(std::span<const unsigned char> head) {

@@ -242,6 +242,7 @@ std::unique_ptr<Brdf> openZemax(const std::string& path, const Parameters& param
                                      path, parameters.choice("side")));
     ScatteredOptions options = scatteredOptions(parameters);
     options.exchange = options.exchange && !through;
+    options.tables = ScatteredOptions::Tables::aboutMirror;
     std::string words = parameters.canonical();
     if (through && !stated)
         words += fmt::format("{}side=transmission-front", words.empty() ? "" : ",");
