@@ -62,7 +62,8 @@ bool starts(std::string_view head, const PictureFormat& format) {
     }
     if (format.start == "#?") {
         const std::size_t end = rest.find('\n');
-        return end != rest.npos && end > 0 && isText(rest.substr(0, rest.find("\n\n")));
+        return end != rest.npos && end > 0 && rest[end - 1] != '\r' &&
+               isText(rest.substr(0, rest.find("\n\n")));
     }
     if (format.start == "\xff\xd8\xff")
         return !rest.empty() && static_cast<unsigned char>(rest[0]) >= 0xc0;
