@@ -82,7 +82,7 @@ TEST_F(TradeoffCommand, MeasuresFormulasAsCompareDoes) {
     const Answer answer = run(asked + "model,lobes");
     ASSERT_EQ(answer.code, 0) << answer.err;
     const json formulas = json::parse(answer.out)["tradeoffs"][0]["formulas"];
-    ASSERT_EQ(formulas.size(), 4U);
+    ASSERT_EQ(formulas.size(), 5U);
     for (const json& formula : formulas) {
         const Answer compared =
             run("compare ggx:alpha=.4 '" + std::string(formula["spec"]) + "' --json");
