@@ -279,7 +279,6 @@ TEST(ProposalShader, AWrongConstantFailsTheChiSquareTest) {
     } catch (const Missing& reason) {
         GTEST_SKIP() << reason.what();
     }
-    Laws laws;
     std::vector<Direction> drawn;
     for (std::size_t k = 0; k < perJob; ++k) drawn.push_back(Written(jobs[3], found, k).wi);
     const test::Partition partition(*one.sampler, jobs[3].pairs.wo.front(), drawn, 20000);
