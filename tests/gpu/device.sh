@@ -66,7 +66,8 @@ first() {
 
 check() {
     if [ $# -gt 0 ]; then
-        tar -C "$folder" -xzf "$1"
+        [ -r "$1" ] || fail "$1: no such bundle; device.sh pack makes one"
+        tar -C "$folder" -xzf "$1" 2>/dev/null || fail "$1: no bundle of device.sh pack"
         device=$folder/device
     else
         device=$(cd "$(dirname "$0")" && pwd)

@@ -1,7 +1,7 @@
 // Chromium and functions that the checks share.
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { dirname, join } from 'node:path';
+import { dirname, join, normalize } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { chromium } from 'playwright-core';
 
@@ -66,6 +66,16 @@ export async function withBrowser(
 export const decoded = (text, Type) => {
   const bytes = Buffer.from(text, 'base64');
   return new Type(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength));
+};
+
+// Answers the requests of a page that imports three.js: the page itself, the files of three.js, and those of
+// `folder`.
+export const filesOfThree = (folder, page) => (path) => {
+  if (path === '/') return { contentType: 'text/html', body: page };
+  if (path.includes('..')) return null;
+  const root = path.startsWith('/three/') ? join(here, '../node_modules') : folder;
+  const body = readFileSync(normalize(join(root, path)));
+  return { contentType: path.endsWith('.js') ? 'text/javascript' : 'application/octet-stream', body };
 };
 
 export const readJson = (path) => JSON.parse(readFileSync(path, 'utf8'));

@@ -11,7 +11,7 @@ import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'nod
 import { tmpdir } from 'node:os';
 import { join, normalize, resolve } from 'node:path';
 import { read } from 'ktx-parse';
-import { decoded, expect, finish, here, withBrowser } from './browser.mjs';
+import { decoded, expect, filesOfThree, finish, here, withBrowser } from './browser.mjs';
 import { levelNumbers, levelSize, normalOf, widths } from './mip_numbers.mjs';
 import { shownDifference, writeSheet } from '../renderers/pictures.mjs';
 
@@ -34,13 +34,7 @@ const kinds = {
 
 const blank = `<!DOCTYPE html><title>mips</title><script type="importmap">{"imports": {
   "three": "/three/build/three.module.js", "three/addons/": "/three/examples/jsm/"}}</script>`;
-function files(path) {
-  if (path === '/') return { contentType: 'text/html', body: blank };
-  if (path.includes('..')) return null;
-  const root = path.startsWith('/three/') ? join(here, '../node_modules') : folder;
-  const body = readFileSync(normalize(join(root, path)));
-  return { contentType: path.endsWith('.js') ? 'text/javascript' : 'application/octet-stream', body };
-}
+const files = filesOfThree(folder, blank);
 
 const text = (floats) => Buffer.from(Float32Array.from(floats).buffer).toString('base64');
 

@@ -2,10 +2,10 @@
 // clipped, and with the maps of three's own materials, each against a plain mesh that has to look alike;
 // the plain mesh itself is proven by three_module.mjs. DRIVER webgpu: the node material.
 import { execFileSync } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { join, normalize, resolve } from 'node:path';
-import { decoded, expect, finish, here, withBrowser } from './browser.mjs';
+import { join, resolve } from 'node:path';
+import { decoded, expect, filesOfThree, finish, withBrowser } from './browser.mjs';
 
 const [driver, program] = [process.argv[2], resolve(process.argv[3])];
 const gpu = driver === 'webgpu';
@@ -19,13 +19,7 @@ const folder = mkdtempSync(join(tmpdir(), 'hshfit-objects-'));
 const blank = `<!DOCTYPE html><title>check</title><script type="importmap">{"imports": {
   "three": "/three/build/three.module.js", "three/webgpu": "/three/build/three.webgpu.js",
   "three/tsl": "/three/build/three.tsl.js"}}</script>`;
-function files(path) {
-  if (path === '/') return { contentType: 'text/html', body: blank };
-  if (path.includes('..')) return null;
-  const root = path.startsWith('/three/') ? join(here, '../node_modules') : folder;
-  const body = readFileSync(normalize(join(root, path)));
-  return { contentType: path.endsWith('.js') ? 'text/javascript' : 'application/octet-stream', body };
-}
+const files = filesOfThree(folder, blank);
 
 const eye = [0.9, 0.7, 3.4],
   fog = { colour: [0.2, 0.5, 0.1], near: 2.4, far: 3.8 },

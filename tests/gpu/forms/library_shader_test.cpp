@@ -1,11 +1,9 @@
 // One shader for the materials of a library, in every language, against the library's BRDFs.
 
 #include "../shaders/runners.h"
+#include "library_sums.h"
 
 #include <hshfit/error.h>
-#include <hshfit/gpu/forms/library_table.h>
-#include <hshfit/material_library/log_terms.h>
-#include <hshfit/material_library/shared_functions.h>
 
 #include <brdfs/catalog.h>
 
@@ -44,19 +42,7 @@ const ml::Library& library() {
 }
 
 gpu::SharedSums sums() {
-    gpu::SharedSums all{.functions = ml::sharedFunctions(library().basis),
-                        .offset = ml::logOffset,
-                        .topFirst = std::log(ml::logOffset),
-                        .topStep = 1 / ml::topsPerLog,
-                        .parts = {},
-                        .materials = {}};
-    for (const auto& [function, scale] : ml::texelParts(library().basis))
-        all.parts.push_back({function, scale});
-    for (const ml::Material& material : library().materials) {
-        const std::vector<double> row = ml::texelsOf(library().basis, material);
-        all.materials.insert(all.materials.end(), row.begin(), row.end());
-    }
-    return all;
+    return constantSums(library());
 }
 
 const gpu::TabledLibrary& tabled() {

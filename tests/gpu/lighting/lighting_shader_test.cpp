@@ -326,9 +326,11 @@ TEST(LightingShader, FaultsShow) {
                             {"split-sum", "0.31830989 * even", "0.3 * even"},
                             {"ltc", "above[next]", "above[k]"},
                             {"prefiltered", " * n - sin(", " * n + sin("}};
+    std::size_t tried = 0;
     for (const Fault& fault : faults) {
         for (const Json& model : files.sidecar["models"]) {
             if (model["model"] != fault.model) continue;
+            ++tried;
             try {
                 BoundShader shader = shaderOf(Language::glsl, Api::openGl, files, model);
                 shader.program = withFault(shader.program, fault.right, fault.wrong);
@@ -340,6 +342,7 @@ TEST(LightingShader, FaultsShow) {
             }
         }
     }
+    EXPECT_EQ(tried, std::size(faults));
 }
 
 }  // namespace

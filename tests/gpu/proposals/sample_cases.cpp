@@ -1,13 +1,10 @@
 #include "sample_cases.h"
 
+#include "../forms/library_sums.h"
 #include "../shaders/slang_rules.h"
 
 #include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/gpu/forms/form_shader.h>
-#include <hshfit/gpu/forms/library_table.h>
-#include <hshfit/material_library/library.h>
-#include <hshfit/material_library/log_terms.h>
-#include <hshfit/material_library/shared_functions.h>
 #include <hshfit/representation/forms/form.h>
 #include <hshfit/representation/forms/represented_brdf.h>
 #include <lib/formula_brdf.h>
@@ -105,26 +102,9 @@ const material_library::Library& library() {
     return made;
 }
 
-gpu::SharedSums constantSums() {
-    namespace ml = material_library;
-    gpu::SharedSums sums{.functions = ml::sharedFunctions(library().basis),
-                         .offset = ml::logOffset,
-                         .topFirst = std::log(ml::logOffset),
-                         .topStep = 1 / ml::topsPerLog,
-                         .parts = {},
-                         .materials = {}};
-    for (const auto& [function, scale] : ml::texelParts(library().basis))
-        sums.parts.push_back({function, scale});
-    for (const ml::Material& material : library().materials) {
-        const std::vector<double> row = ml::texelsOf(library().basis, material);
-        sums.materials.insert(sums.materials.end(), row.begin(), row.end());
-    }
-    return sums;
-}
-
 /// Sums of the library, with a table or without.
 const gpu::SharedSums& sharedSums(bool table) {
-    static const gpu::SharedSums constants = constantSums(),
+    static const gpu::SharedSums constants = constantSums(library()),
                                  tabled = gpu::tabledSums(constants, {40, 23, 18});
     return table ? tabled : constants;
 }
