@@ -11,7 +11,7 @@ namespace hshfit::brdfs {
 ///     V(wi) = 1/pi * integral of f(wi, wo) cos(theta_o) d(wo)
 struct Veil {
     FitSamples sums;              ///< one sample for each incident direction that differs
-    std::vector<std::size_t> of;  ///< sum of each sample
+    std::vector<std::size_t> of;  ///< the sum that each sample takes
 };
 
 /// At the nodes of a grid (gridFor) for the lobes of a BRDF that is reciprocal, refined until the

@@ -98,22 +98,21 @@ void ScratchFile::read(std::uint64_t offset, std::span<std::byte> bytes) const {
                 bytes.size() - fromDisk);
 }
 
-void ScratchFile::copyTo(AtomicFile& file) const {
+void ScratchFile::eachPart(const std::function<void(std::span<const std::byte>)>& take) const {
     std::vector<std::byte> part;
     for (std::uint64_t at = 0; at < size(); at += part.size()) {
         part.resize(static_cast<std::size_t>(std::min<std::uint64_t>(copiedAtOnce, size() - at)));
         read(at, part);
-        file.write(part);
+        take(part);
     }
 }
 
+void ScratchFile::copyTo(AtomicFile& file) const {
+    eachPart([&](std::span<const std::byte> part) { file.write(part); });
+}
+
 void ScratchFile::copyTo(ScratchFile& other) const {
-    std::vector<std::byte> part;
-    for (std::uint64_t at = 0; at < size(); at += part.size()) {
-        part.resize(static_cast<std::size_t>(std::min<std::uint64_t>(copiedAtOnce, size() - at)));
-        read(at, part);
-        other.append(part);
-    }
+    eachPart([&](std::span<const std::byte> part) { other.append(part); });
 }
 
 std::string scratchFolder(const std::string& output) {

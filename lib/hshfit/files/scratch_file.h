@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -40,6 +41,7 @@ public:
     void copyTo(ScratchFile& other) const;
 
 private:
+    void eachPart(const std::function<void(std::span<const std::byte>)>& take) const;
     void flush();
     [[noreturn]] void fail(const char* what, int error) const;
 

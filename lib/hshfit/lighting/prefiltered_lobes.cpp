@@ -1,6 +1,7 @@
 #include <hshfit/lighting/prefiltered_lobes.h>
 
 #include <hshfit/bases/catalog.h>
+#include <hshfit/brdf/vectors.h>
 #include <hshfit/error.h>
 #include <hshfit/light/light_projection.h>
 #include <hshfit/lighting/harmonics.h>
@@ -68,10 +69,7 @@ LobeSolution between(const LobeSolution& a, const LobeSolution& b) {
         LobePlace& place = middle.places[k];
         const LobePlace& other = b.places[k];
         place.roughness = (place.roughness + other.roughness) / 2;
-        const Direction sum{place.axis.x + other.axis.x, place.axis.y + other.axis.y,
-                            place.axis.z + other.axis.z};
-        const double length = std::sqrt(dot(sum, sum));
-        place.axis = {sum.x / length, sum.y / length, sum.z / length};
+        place.axis = normalised(place.axis + other.axis);
     }
     return middle;
 }
