@@ -177,21 +177,24 @@ void runBatch(BatchArguments& arguments, Globals& globals) {
         run(arguments, globals);
 }
 
+constexpr ArgumentRow batchArguments[] = {
+    required("MANIFEST", at<&BatchArguments::manifest>,
+             "JSON lines, each a command, its input and its options (docs/reference/batch.md)",
+             {.files = Files::read, .dash = ""}),
+    optionalOutput(at<&BatchArguments::folder>,
+                   "Folder of the results, one folder for each item in its items/",
+                   {.files = Files::folder}),
+};
+
 }  // namespace
 
-OptionTables batchRows() {
-    return {jobs::batchOptions().rows};
+CommandRows batchRows() {
+    return {batchArguments, {jobs::batchOptions().rows}};
 }
 
 void addBatch(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<BatchArguments>();
-    command
-        .add_option(
-            "MANIFEST", arguments->manifest,
-            "JSON lines, each a command, its input and its options (docs/reference/batch.md)")
-        ->required();
-    command.add_option("-o,--output", arguments->folder,
-                       "Folder of the results, one folder for each item in its items/");
+    addArguments(command, batchArguments, *arguments);
     addOptions(command, jobs::batchOptions(), arguments->options);
     command.callback([arguments, &globals] { runBatch(*arguments, globals); });
 }

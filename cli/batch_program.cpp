@@ -2,9 +2,9 @@
 
 #include "command.h"
 #include "command_table.h"
+#include "option_rows.h"
 #include "run_words.h"
 #include "usage_errors.h"
-#include "value_table.h"
 
 #include <hshfit/error.h>
 #include <hshfit/files/json_fields.h>

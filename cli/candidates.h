@@ -1,6 +1,6 @@
 #pragma once
 
-#include "value_table.h"
+#include "option_rows.h"
 
 #include <string>
 #include <vector>

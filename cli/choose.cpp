@@ -37,17 +37,22 @@ void runChoose(const ChooseArguments& arguments, Globals& globals) {
     if (!choice.recommended) endWithoutNumbers(globals, choice.why);
 }
 
+constexpr ArgumentRow chooseArguments[] = {
+    required("SPEC", at<&ChooseArguments::spec>, "A BRDF", brdfRead),
+    optionalOutput(at<&ChooseArguments::output>,
+                   "Folder for choice.html, choice.json and the recommended material",
+                   {.files = Files::folder}),
+};
+
 }  // namespace
 
-OptionTables chooseRows() {
-    return {jobs::chooseOptions().rows};
+CommandRows chooseRows() {
+    return {chooseArguments, {jobs::chooseOptions().rows}};
 }
 
 void addChoose(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<ChooseArguments>();
-    command.add_option("SPEC", arguments->spec, "A BRDF")->required();
-    command.add_option("-o,--output", arguments->output,
-                       "Folder for choice.html, choice.json and the recommended material");
+    addArguments(command, chooseArguments, *arguments);
     addOptions(command, jobs::chooseOptions(), arguments->options);
     command.callback([arguments, &globals] { runChoose(*arguments, globals); });
 }

@@ -58,7 +58,8 @@ constexpr Command table[] = {
          "The catalogs: models, formats (read), writers, lights, bases, metrics, targets, presets",
      .file = "list.cpp",
      .example = "hshfit list presets acrylic",
-     .add = addList},
+     .add = addList,
+     .options = listRows},
     {.name = "info",
      .group = inspection,
      .help = "What a BRDF, a light or a coefficient file is, and how healthy: channels, symmetry, "
@@ -278,20 +279,23 @@ constexpr Command table[] = {
      .help = "Commands by group and topics; the options of one command; one topic",
      .file = "help.cpp",
      .example = "hshfit help specifications",
-     .add = addHelp},
+     .add = addHelp,
+     .options = helpRows},
     {.name = "completion",
      .group = program,
      .help = "A script that completes commands, options, models, parameters, presets and other "
              "names in a shell",
      .file = "completion.cpp",
      .example = "hshfit completion bash -o hshfit.bash",
-     .add = addCompletion},
+     .add = addCompletion,
+     .options = completionRows},
     {.name = "manual",
      .group = program,
      .help = "The manual: a page for man of the program, of every command and of every topic",
      .file = "manual.cpp",
      .example = "hshfit manual -o man",
-     .add = addManual},
+     .add = addManual,
+     .options = manualRows},
 };
 
 }  // namespace

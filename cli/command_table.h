@@ -25,8 +25,7 @@ struct Command {
     const char* example;  ///< runs in a folder after the examples that write its inputs
     /// Adds the options and the function that runs the command; null in a wing that is not built.
     void (*add)(CLI::App& command, Globals& globals);
-    /// The rows of its options; null where `add` states each.
-    OptionTables (*options)() = nullptr;
+    CommandRows (*options)();
     std::optional<Wing> wing = std::nullopt;  ///< without one it is of the core
 };
 

@@ -202,26 +202,27 @@ void runCompare(CompareArguments& arguments, Globals& globals) {
     many ? compareMany(arguments, globals) : compareTwo(arguments, globals);
 }
 
+constexpr ArgumentRow compareArguments[] = {
+    required("A", at<&CompareArguments::a>,
+             "Reference: BRDF or coefficient file; a folder or pattern for pairs by name",
+             brdfRead),
+    required("B", at<&CompareArguments::others>,
+             "Approximation: BRDF or coefficient file; several, a folder or a pattern", brdfRead),
+    optionalOutput(at<&CompareArguments::output>,
+                   "Folder for a page with figures and spheres, made if absent; of several, for "
+                   "a table and a folder each",
+                   {.files = Files::folder}),
+};
+
 }  // namespace
 
-OptionTables compareRows() {
-    return {jobs::compareOptions().rows, jobs::figureOptions().rows};
+CommandRows compareRows() {
+    return {compareArguments, {jobs::compareOptions().rows, jobs::figureOptions().rows}};
 }
 
 void addCompare(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<CompareArguments>();
-    command
-        .add_option("A", arguments->a,
-                    "Reference: BRDF or coefficient file; a folder or pattern for pairs by name")
-        ->required();
-    command
-        .add_option("B", arguments->others,
-                    "Approximation: BRDF or coefficient file; several, a folder or a pattern")
-        ->required();
-    command.add_option(
-        "-o,--output", arguments->output,
-        "Folder for a page with figures and spheres, made if absent; of several, for "
-        "a table and a folder each");
+    addArguments(command, compareArguments, *arguments);
     addOptions(command, jobs::compareOptions(), arguments->options);
     addOptions(command, jobs::figureOptions(), arguments->figures, "Figures for print");
     command.callback([arguments, &globals] { runCompare(*arguments, globals); });

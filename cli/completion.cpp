@@ -1,5 +1,6 @@
 #include "candidates.h"
 #include "command.h"
+#include "job_options.h"
 
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
@@ -53,18 +54,30 @@ void complete(const CompletionArguments& arguments, const CLI::App& program,
     printJson({{"format", "hshfit-completion"}, {"version", 1}, {"words", words}});
 }
 
+std::vector<Word> shellWords() {
+    return {{"bash"}, {"zsh"}, {"fish"}};
+}
+
+constexpr ArgumentRow completionArguments[] = {
+    required("SHELL", at<&CompletionArguments::shell>, "The shell that runs the script",
+             {.words = shellWords, .complete = true}),
+    optional("WORDS", at<&CompletionArguments::words>,
+             "After --: the words of a command line up to the one being typed. The "
+             "answer is a line of flags, and the words that may stand in its place"),
+    optionalOutput(at<&CompletionArguments::output>,
+                   "File for the script (default: standard output)",
+                   {.files = Files::written, .dash = ""}),
+};
+
 }  // namespace
+
+CommandRows completionRows() {
+    return {completionArguments, {}};
+}
 
 void addCompletion(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<CompletionArguments>();
-    command.add_option("SHELL", arguments->shell, "The shell that runs the script")
-        ->check(CLI::IsMember({"bash", "zsh", "fish"}))
-        ->required();
-    command.add_option("WORDS", arguments->words,
-                       "After --: the words of a command line up to the one being typed. The "
-                       "answer is a line of flags, and the words that may stand in its place");
-    command.add_option("-o,--output", arguments->output,
-                       "File for the script (default: standard output)");
+    addArguments(command, completionArguments, *arguments);
     const CLI::App* const program = command.get_parent();
     command.callback([arguments, program, &globals] {
         if (!arguments->words.empty()) return complete(*arguments, *program, globals);

@@ -162,24 +162,28 @@ void runConvert(const ConvertArguments& arguments, Globals& globals) {
     convertOne(arguments, globals);
 }
 
+constexpr ArgumentRow convertArguments[] = {
+    required("IN", at<&ConvertArguments::input>,
+             "BRDF, measured file or coefficient file; with -o also a folder of measured files",
+             brdfRead),
+    optional("OUT", at<&ConvertArguments::output>, "File to write; with -o another IN",
+             {.files = Files::written, .dash = ""}),
+    optional("MORE", at<&ConvertArguments::more>, "With -o: further IN",
+             {.syntax = Syntax::brdf, .files = Files::read}),
+    optionalOutput(at<&ConvertArguments::folder>,
+                   "Folder for the files of one or more IN, each named after its input; needs --to",
+                   {.files = Files::folder}),
+};
+
 }  // namespace
 
-OptionTables convertRows() {
-    return {jobs::convertOptions().rows};
+CommandRows convertRows() {
+    return {convertArguments, {jobs::convertOptions().rows}};
 }
 
 void addConvert(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<ConvertArguments>();
-    command
-        .add_option("IN", arguments->input,
-                    "BRDF, measured file or coefficient file; with -o also a folder of measured "
-                    "files")
-        ->required();
-    command.add_option("OUT", arguments->output, "File to write; with -o another IN");
-    command.add_option("MORE", arguments->more, "With -o: further IN");
-    command.add_option("-o,--output", arguments->folder,
-                       "Folder for the files of one or more IN, each named after its input; needs "
-                       "--to");
+    addArguments(command, convertArguments, *arguments);
     addOptions(command, jobs::convertOptions(), arguments->options);
     command.callback([arguments, &globals] { runConvert(*arguments, globals); });
 }

@@ -65,18 +65,23 @@ void evaluateAll(const EvalArguments& arguments, const Globals& globals) {
     printJson(answer);
 }
 
+constexpr ArgumentRow evalArguments[] = {
+    required("SPEC", at<&EvalArguments::spec>, "BRDF or coefficient file", brdfRead),
+    {optionalOutput(at<&EvalArguments::output>, "CSV to write (default: standard output)",
+                    {.files = Files::written, .dash = ".csv"})
+         .row.with("pairs")},
+};
+
 }  // namespace
 
-OptionTables evalRows() {
-    return {jobs::evalOptions().rows};
+CommandRows evalRows() {
+    return {evalArguments, {jobs::evalOptions().rows}};
 }
 
 void addEval(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<EvalArguments>();
-    command.add_option("SPEC", arguments->spec, "BRDF or coefficient file")->required();
     addOptions(command, jobs::evalOptions(), arguments->options);
-    command.add_option("-o,--output", arguments->output, "CSV to write (default: standard output)")
-        ->needs(command.get_option("--pairs"));
+    addArguments(command, evalArguments, *arguments);
     command.callback([arguments, &globals] {
         if (arguments->options.pairs.empty())
             evaluateOne(*arguments, globals);

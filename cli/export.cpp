@@ -224,7 +224,7 @@ unsigned kindOf(const ExportArguments& arguments) {
 /// Refuses options that are for other kinds of exports.
 void requireOptions(const CLI::App& command, const ExportArguments& arguments, unsigned kind) {
     std::vector<std::string_view> names;
-    for (const auto rows : exportRows()) {
+    for (const auto rows : exportRows().options) {
         const auto given = misplacedOption(command, rows, kind);
         if (!given) continue;
         for (const Kind& each : kinds)
@@ -364,25 +364,27 @@ void runExport(const ExportArguments& arguments, const CLI::App& command, Global
     many ? exportMany(arguments, globals) : exportOne(arguments, globals);
 }
 
+constexpr ArgumentRow exportArguments[] = {
+    required("COEFFS", at<&ExportArguments::inputs>,
+             "Coefficient file of hshfit project, one or more, or a folder of them; material.json "
+             "of hshfit svbrdf; for gltf, materialx, usd and --lighting a BRDF too",
+             brdfRead),
+    requiredOutput(at<&ExportArguments::output>,
+                   "Folder, made if absent; with many COEFFS, of one folder for each",
+                   {.files = Files::folder}),
+};
+
 }  // namespace
 
-OptionTables exportRows() {
-    return {jobs::exportOptions().rows, jobs::lightingExportOptions().rows,
-            jobs::mapExportOptions().rows, jobs::materialExportOptions().rows};
+CommandRows exportRows() {
+    return {exportArguments,
+            {jobs::exportOptions().rows, jobs::lightingExportOptions().rows,
+             jobs::mapExportOptions().rows, jobs::materialExportOptions().rows}};
 }
 
 void addExport(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<ExportArguments>();
-    command
-        .add_option(
-            "COEFFS", arguments->inputs,
-            "Coefficient file of hshfit project, one or more, or a folder of them; material.json "
-            "of hshfit svbrdf; for gltf, materialx, usd and --lighting a BRDF too")
-        ->required();
-    command
-        .add_option("-o,--output", arguments->output,
-                    "Folder, made if absent; with many COEFFS, of one folder for each")
-        ->required();
+    addArguments(command, exportArguments, *arguments);
     addOptions(command, jobs::exportOptions(), arguments->options);
     addOptions(command, jobs::lightingExportOptions(), arguments->lighting);
     addOptions(command, jobs::mapExportOptions(), arguments->map);

@@ -12,6 +12,7 @@
 #include <hshfit/files/output_rule.h>
 #include <hshfit/percent.h>
 
+#include <jobs/common/option_words.h>
 #include <jobs/fits/fit.h>
 
 #include <fmt/format.h>
@@ -221,24 +222,31 @@ void runFit(FitArguments& arguments, Globals& globals) {
     printJson(fitted.preset);
 }
 
+constexpr ArgumentRow fitArguments[] = {
+    optional("DATA", at<&FitArguments::data>, "BRDF or coefficient file", brdfRead),
+    optional("all", at<&FitArguments::all>,
+             "Fit every file of a folder; -o DIR takes one result each; what stands there and "
+             "is valid is not fitted again",
+             {.files = Files::readFolder}),
+    optional("compare-models", at<&FitArguments::models>,
+             "Fit each of these models and rank them by held-out directions",
+             {.words = jobs::modelWords, .syntax = Syntax::sum}),
+    optionalOutput(at<&FitArguments::output>,
+                   "Where the fit goes: a preset (.json), or a folder for a report as well",
+                   jsonWritten),
+};
+
 }  // namespace
 
-OptionTables fitRows() {
-    return {jobs::fitOptions().rows, jobs::instrumentOptions().rows, jobs::figureOptions().rows};
+CommandRows fitRows() {
+    return {fitArguments,
+            {jobs::fitOptions().rows, jobs::instrumentOptions().rows, jobs::figureOptions().rows}};
 }
 
 void addFit(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<FitArguments>();
     jobs::FitOptions& options = arguments->options;
-    command.add_option("DATA", arguments->data, "BRDF or coefficient file");
-    command.add_option(
-        "--all", arguments->all,
-        "Fit every file of a folder; -o DIR takes one result each; what stands there and "
-        "is valid is not fitted again");
-    command.add_option("--compare-models", arguments->models,
-                       "Fit each of these models and rank them by held-out directions");
-    command.add_option("-o,--output", arguments->output,
-                       "Where the fit goes: a preset (.json), or a folder for a report as well");
+    addArguments(command, fitArguments, *arguments);
     addOptions(command, jobs::fitOptions(), options);
     addOptions(command, jobs::instrumentOptions(), options.instrument, "Instrument");
     addOptions(command, jobs::figureOptions(), arguments->figures, "Figures for print");

@@ -33,16 +33,20 @@ void runGaussians(const GaussianArguments& arguments, const Globals& globals) {
     printText(text);
 }
 
+constexpr ArgumentRow gaussiansArguments[] = {
+    required("SPEC", at<&GaussianArguments::spec>, "BRDF; isotropic", brdfRead),
+    requiredOutput(at<&GaussianArguments::output>, "Mixture, .json", jsonWritten),
+};
+
 }  // namespace
 
-OptionTables gaussianRows() {
-    return {jobs::gaussianOptions().rows};
+CommandRows gaussianRows() {
+    return {gaussiansArguments, {jobs::gaussianOptions().rows}};
 }
 
 void addGaussians(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<GaussianArguments>();
-    command.add_option("SPEC", arguments->spec, "BRDF; isotropic")->required();
-    command.add_option("-o,--output", arguments->output, "Mixture, .json")->required();
+    addArguments(command, gaussiansArguments, *arguments);
     addOptions(command, jobs::gaussianOptions(), arguments->options);
     command.callback([arguments, &globals] { runGaussians(*arguments, globals); });
 }

@@ -1,11 +1,14 @@
 #include "command.h"
 #include "command_table.h"
 #include "help_pages.h"
+#include "job_options.h"
 #include "terminal.h"
 #include "topics.h"
 
 #include <hshfit/error.h>
 #include <hshfit/specification/parameters.h>
+
+#include <jobs/common/option_words.h>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -48,14 +51,34 @@ Json rowsJson(std::span<const Row> rows) {
     return json;
 }
 
+struct HelpArguments {
+    std::string word;
+};
+
+std::vector<Word> helpWords() {
+    std::vector<Word> words = jobs::wordsOf(commands());
+    for (const Topic& topic : topics()) words.push_back({topic.name, topic.help});
+    return words;
+}
+
+constexpr ArgumentRow helpArguments[] = {
+    optional("WORD", at<&HelpArguments::word>, "A command or a topic; all of them if left out",
+             {.words = helpWords}),
+};
+
 }  // namespace
 
+CommandRows helpRows() {
+    return {helpArguments, {}};
+}
+
 void addHelp(CLI::App& command, Globals& globals) {
-    auto word = std::make_shared<std::string>();
-    command.add_option("WORD", *word, "A command or a topic; all of them if left out");
+    auto arguments = std::make_shared<HelpArguments>();
+    addArguments(command, helpArguments, *arguments);
     const CLI::App* const program = command.get_parent();
-    command.callback([word, program, &globals] {
-        const Page page = word->empty() ? programPage(*program) : pageOf(*word, *program);
+    command.callback([arguments, program, &globals] {
+        const std::string& word = arguments->word;
+        const Page page = word.empty() ? programPage(*program) : pageOf(word, *program);
         if (!globals.json) return printHelp(textOf(page, columns(), hasColour(Stream::output)));
         printJson({{"format", "hshfit-help"},
                    {"version", 1},

@@ -1,9 +1,9 @@
 #include "help_pages.h"
 
 #include "command_table.h"
+#include "option_rows.h"
 #include "terminal.h"
 #include "topics.h"
-#include "value_table.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

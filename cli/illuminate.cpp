@@ -91,27 +91,29 @@ jobs::IlluminateMethod otherThan(jobs::IlluminateMethod method) {
 
 /// Throws UsageError for an option of the other method.
 void refuseMisplaced(const CLI::App& command, jobs::IlluminateMethod method) {
-    for (const auto rows : illuminateRows())
+    for (const auto rows : illuminateRows().options)
         if (const auto given = misplacedOption(command, rows, jobs::illuminateBit(method)))
             throw UsageError(fmt::format("{} is for --method {}, not {}", given->name,
                                          jobs::nameOf(otherThan(method)), jobs::nameOf(method)));
 }
 
+constexpr ArgumentRow illuminateArguments[] = {
+    required("SCENE", at<&IlluminateArguments::scene>,
+             "Materials, objects, lights and cameras, as JSON", {.files = Files::read}),
+    requiredOutput(at<&IlluminateArguments::output>,
+                   "Folder for the pictures: CAMERA.exr, with standard errors, and CAMERA.png",
+                   {.files = Files::folder}),
+};
+
 }  // namespace
 
-OptionTables illuminateRows() {
-    return {jobs::illuminateOptions().rows, jobs::cacheOptions().rows};
+CommandRows illuminateRows() {
+    return {illuminateArguments, {jobs::illuminateOptions().rows, jobs::cacheOptions().rows}};
 }
 
 void addIlluminate(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<IlluminateArguments>();
-    command
-        .add_option("SCENE", arguments->scene, "Materials, objects, lights and cameras, as JSON")
-        ->required();
-    command
-        .add_option("-o,--output", arguments->output,
-                    "Folder for the pictures: CAMERA.exr, with standard errors, and CAMERA.png")
-        ->required();
+    addArguments(command, illuminateArguments, *arguments);
     addOptions(command, jobs::illuminateOptions(), arguments->options);
     addOptions(command, jobs::cacheOptions(), arguments->options, "Radiance cache");
     command.callback([arguments, &globals, &command] {

@@ -80,20 +80,22 @@ void runImport(const ImportArguments& arguments, const Globals& globals) {
     }
 }
 
+constexpr ArgumentRow importArguments[] = {
+    required("FILE", at<&ImportArguments::input>,
+             "Sidecar (.hsh.json), .bin, .exr, .ktx2, .dds, .js, .h or .tensor of an export",
+             {.files = Files::read, .dash = ""}),
+    requiredOutput(at<&ImportArguments::output>, "Coefficient file, .json or .exr", jsonWritten),
+};
+
 }  // namespace
 
-OptionTables importRows() {
-    return {jobs::importOptions().rows};
+CommandRows importRows() {
+    return {importArguments, {jobs::importOptions().rows}};
 }
 
 void addImport(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<ImportArguments>();
-    command
-        .add_option("FILE", arguments->input,
-                    "Sidecar (.hsh.json), .bin, .exr, .ktx2, .dds, .js, .h or .tensor of an export")
-        ->required();
-    command.add_option("-o,--output", arguments->output, "Coefficient file, .json or .exr")
-        ->required();
+    addArguments(command, importArguments, *arguments);
     addOptions(command, jobs::importOptions(), arguments->options);
     command.callback([arguments, &globals] { runImport(*arguments, globals); });
 }

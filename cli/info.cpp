@@ -174,19 +174,22 @@ void runInfo(const InfoArguments& arguments, Globals& globals) {
         printText(described.text());
 }
 
+constexpr ArgumentRow infoArguments[] = {
+    required("SPEC", at<&InfoArguments::specs>,
+             "BRDF, light, coefficient file or file of an export; one or more, and of a "
+             "folder its measured and coefficient files",
+             {.syntax = Syntax::either, .files = Files::read, .dash = ""}),
+};
+
 }  // namespace
 
-OptionTables infoRows() {
-    return {jobs::infoOptions().rows};
+CommandRows infoRows() {
+    return {infoArguments, {jobs::infoOptions().rows}};
 }
 
 void addInfo(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<InfoArguments>();
-    command
-        .add_option("SPEC", arguments->specs,
-                    "BRDF, light, coefficient file or file of an export; one or more, and of a "
-                    "folder its measured and coefficient files")
-        ->required();
+    addArguments(command, infoArguments, *arguments);
     addOptions(command, jobs::infoOptions(), arguments->options);
     command.callback([arguments, &globals] { runInfo(*arguments, globals); });
 }

@@ -134,19 +134,22 @@ void runIrradiance(const IrradianceArguments& arguments, const Globals& globals)
         printText(text(lit, arguments));
 }
 
+constexpr ArgumentRow irradianceArguments[] = {
+    required("SPEC", at<&IrradianceArguments::specs>,
+             "One or more lights, which add up: kind:key=value,…, the path of a picture, or "
+             "PATH:convention=NAME of nine numbers (docs/explanation/irradiance.md)",
+             lightRead),
+};
+
 }  // namespace
 
-OptionTables irradianceRows() {
-    return {jobs::irradianceOptions().rows};
+CommandRows irradianceRows() {
+    return {irradianceArguments, {jobs::irradianceOptions().rows}};
 }
 
 void addIrradiance(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<IrradianceArguments>();
-    command
-        .add_option("SPEC", arguments->specs,
-                    "One or more lights, which add up: kind:key=value,…, the path of a picture, or "
-                    "PATH:convention=NAME of nine numbers (docs/explanation/irradiance.md)")
-        ->required();
+    addArguments(command, irradianceArguments, *arguments);
     addOptions(command, jobs::irradianceOptions(), arguments->options);
     command.callback([arguments, &globals] { runIrradiance(*arguments, globals); });
 }

@@ -16,13 +16,19 @@ namespace {
 
 using jobs::OptionRow;
 
+bool isPositional(const OptionRow& row) {
+    return 'A' <= row.name[0] && row.name[0] <= 'Z';
+}
+
 std::string nameOf(const OptionRow& row) {
-    return fmt::format("--{}", row.name);
+    return fmt::format("{}{}", isPositional(row) ? "" : "--", row.name);
 }
 
 /// With its other name.
 std::string namesOf(const OptionRow& row) {
-    return row.also.empty() ? nameOf(row) : fmt::format("--{},--{}", row.name, row.also);
+    if (row.also.empty()) return nameOf(row);
+    return row.also.size() == 1 ? fmt::format("-{},{}", row.also, nameOf(row))
+                                : fmt::format("{},--{}", nameOf(row), row.also);
 }
 
 std::string nameWithout(const OptionRow& row) {
@@ -65,7 +71,8 @@ public:
     /// Several, with commas or by an option for each.
     template <class Element>
     void operator()(std::vector<Element>* value) const {
-        CLI::Option* option = command_.add_option(namesOf(row_), *value)->allow_extra_args(false);
+        CLI::Option* option = command_.add_option(namesOf(row_), *value);
+        if (!isPositional(row_)) option->allow_extra_args(false);
         if (row_.values.syntax == jobs::Syntax::list) option->delimiter(',');
         checkRange<Element>(*option);
         if (!value->empty() && !saysDefault())
@@ -142,11 +149,23 @@ void addOptions(CLI::App& command, const std::vector<jobs::BoundOption>& options
     for (const jobs::BoundOption& option : options) relate(command, *option.row);
 }
 
+void addArguments(CLI::App& command, std::span<const ArgumentRow> rows, void* arguments,
+                  const std::type_info& type) {
+    for (const ArgumentRow& each : rows) {
+        addOptions(command, jobs::boundOptions({&each.row, 1}, arguments, type), "");
+        if (each.required) command.get_option(nameOf(each.row))->required();
+    }
+}
+
+bool isOf(const CLI::Option& option, const OptionRow& row) {
+    if (option.get_positional()) return option.get_name(true, false) == row.name;
+    return option.check_lname(std::string(row.name)) ||
+           (!row.without.empty() && option.check_lname(nameWithout(row).substr(2)));
+}
+
 const OptionRow* rowOf(std::span<const OptionRow> rows, const CLI::Option& option) {
-    const auto row = std::ranges::find_if(rows, [&](const OptionRow& each) {
-        return option.check_lname(std::string(each.name)) ||
-               (!each.without.empty() && option.check_lname(nameWithout(each).substr(2)));
-    });
+    const auto row =
+        std::ranges::find_if(rows, [&](const OptionRow& each) { return isOf(option, each); });
     return row == rows.end() ? nullptr : &*row;
 }
 

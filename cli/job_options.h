@@ -1,6 +1,6 @@
 #pragma once
 
-#include <jobs/common/option_row.h>
+#include "command_rows.h"
 
 #include <optional>
 #include <span>
@@ -14,6 +14,15 @@ class Option;
 
 namespace hshfit::cli {
 
+/// Adds the arguments of a command, whose values go to members of `arguments`. An option that one
+/// of them needs has to be there already.
+void addArguments(CLI::App& command, std::span<const ArgumentRow> rows, void* arguments,
+                  const std::type_info& type);
+template <class Arguments>
+void addArguments(CLI::App& command, std::span<const ArgumentRow> rows, Arguments& arguments) {
+    addArguments(command, rows, &arguments, typeid(Arguments));
+}
+
 /// Adds the options of a job; `options` has the defaults, and takes what is given. `group` is a
 /// heading in the help; none: among the others.
 void addOptions(CLI::App& command, const std::vector<jobs::BoundOption>& options,
@@ -24,6 +33,8 @@ void addOptions(CLI::App& command, jobs::OptionRows<Options> rows, Options& opti
     addOptions(command, boundOptions(rows, options), group);
 }
 
+/// Whether an option of the command line stands for this row.
+bool isOf(const CLI::Option& option, const jobs::OptionRow& row);
 /// The row that an option of the command line stands for; null if it is none of these.
 const jobs::OptionRow* rowOf(std::span<const jobs::OptionRow> rows, const CLI::Option& option);
 

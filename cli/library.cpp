@@ -390,31 +390,35 @@ void check(const CLI::App& command, const LibraryArguments& arguments, const Act
         throw UsageError(fmt::format("library {} needs --library LIBRARY", action.name));
 }
 
-std::vector<std::string> actionNames() {
-    std::vector<std::string> names;
-    for (const Action& action : actions) names.emplace_back(action.name);
-    return names;
+std::vector<Word> actionWords() {
+    std::vector<Word> words;
+    for (const Action& action : actions) words.push_back({std::string(action.name)});
+    return words;
 }
+
+constexpr ArgumentRow libraryArguments[] = {
+    required("ACTION", at<&LibraryArguments::action>, "What to do",
+             {.words = actionWords, .complete = true}),
+    optional(
+        "INPUT", at<&LibraryArguments::inputs>,
+        "learn: MATERIAL… (specifications, files, folders); merge: LIBRARY…; encode and search: "
+        "LIBRARY MATERIAL; decode and mix: LIBRARY:NAME; list, map, export: LIBRARY; "
+        "reconstruct: SAMPLES; next: [SAMPLES]",
+        brdfRead),
+    optionalOutput(at<&LibraryArguments::output>,
+                   "The library, the material, of map a page, of next a CSV, of export a folder",
+                   {.files = Files::written, .dash = ".library"}),
+};
 
 }  // namespace
 
-OptionTables libraryRows() {
-    return {jobs::libraryOptions().rows};
+CommandRows libraryRows() {
+    return {libraryArguments, {jobs::libraryOptions().rows}};
 }
 
 void addLibrary(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<LibraryArguments>();
-    command.add_option("ACTION", arguments->action, "What to do")
-        ->required()
-        ->check(CLI::IsMember(actionNames()));
-    command.add_option(
-        "INPUT", arguments->inputs,
-        "learn: MATERIAL… (specifications, files, folders); merge: LIBRARY…; encode and search: "
-        "LIBRARY MATERIAL; decode and mix: LIBRARY:NAME; list, map, export: LIBRARY; reconstruct: "
-        "SAMPLES; next: [SAMPLES]");
-    command.add_option(
-        "-o,--output", arguments->output,
-        "The library, the material, of map a page, of next a CSV, of export a folder");
+    addArguments(command, libraryArguments, *arguments);
     addOptions(command, jobs::libraryOptions(), arguments->options);
     command.callback([arguments, &globals, &command] {
         const Action& action = *std::ranges::find(actions, arguments->action, &Action::name);

@@ -144,20 +144,23 @@ void runLight(const LightArguments& arguments, Globals& globals) {
         printText(text(result, arguments.output));
 }
 
+constexpr ArgumentRow lightArguments[] = {
+    required("SPEC", at<&LightArguments::specs>,
+             "One or more lights, which add up: kind:key=value,…, the path of a picture, or "
+             "PATH:convention=NAME of nine numbers (docs/explanation/irradiance.md)",
+             lightRead),
+    requiredOutput(at<&LightArguments::output>, "File of coefficients, .json", jsonWritten),
+};
+
 }  // namespace
 
-OptionTables lightRows() {
-    return {jobs::lightOptions().rows};
+CommandRows lightRows() {
+    return {lightArguments, {jobs::lightOptions().rows}};
 }
 
 void addLight(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<LightArguments>();
-    command
-        .add_option("SPEC", arguments->specs,
-                    "One or more lights, which add up: kind:key=value,…, the path of a picture, or "
-                    "PATH:convention=NAME of nine numbers (docs/explanation/irradiance.md)")
-        ->required();
-    command.add_option("-o,--output", arguments->output, "File of coefficients, .json")->required();
+    addArguments(command, lightArguments, *arguments);
     addOptions(command, jobs::lightOptions(), arguments->options);
     command.callback([arguments, &globals] { runLight(*arguments, globals); });
 }

@@ -1,5 +1,7 @@
 #include "command.h"
+#include "command_rows.h"
 #include "documents.h"
+#include "job_options.h"
 #include "page.h"
 #include "terminal.h"
 
@@ -17,6 +19,7 @@
 #include <brdfs/fit/dispersion_law.h>
 #include <brdfs/presets/metals.h>
 #include <brdfs/presets/preset_collection.h>
+#include <jobs/common/option_words.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -345,20 +348,41 @@ void listPresets(const std::string& text, bool all, bool json, Json& document) {
     printText(lines);
 }
 
+struct ListArguments {
+    std::string section, text;
+    bool all = false;
+};
+
+std::vector<Word> sectionWords() {
+    std::vector<Word> words{{"presets"}};
+    for (const Section& s : sections) words.push_back({std::string(s.name)});
+    return words;
+}
+
+std::vector<Word> presetWords() {
+    std::vector<Word> words = jobs::wordsOf(brdfs::presets());
+    for (const brdfs::CollectionEntry& collection : brdfs::presetCollections())
+        words.push_back({std::string(collection.name), "a collection"});
+    return words;
+}
+
+constexpr ArgumentRow listArguments[] = {
+    optional("SECTION", at<&ListArguments::section>, "One catalog; all of them if left out",
+             {.words = sectionWords, .complete = true}),
+    optional("TEXT", at<&ListArguments::text>, "presets: those whose name holds this, in any case",
+             {.words = presetWords}),
+    optional("all", at<&ListArguments::all>, "presets: every name, not a line per collection"),
+};
+
 }  // namespace
 
+CommandRows listRows() {
+    return {listArguments, {}};
+}
+
 void addList(CLI::App& command, Globals& globals) {
-    struct Options {
-        std::string section, text;
-        bool all = false;
-    };
-    auto options = std::make_shared<Options>();
-    std::vector<std::string> names{"presets"};
-    for (const Section& s : sections) names.emplace_back(s.name);
-    command.add_option("SECTION", options->section, "One catalog; all of them if left out")
-        ->check(CLI::IsMember(names));
-    command.add_option("TEXT", options->text, "presets: those whose name holds this, in any case");
-    command.add_flag("--all", options->all, "presets: every name, not a line per collection");
+    auto options = std::make_shared<ListArguments>();
+    addArguments(command, listArguments, *options);
     command.callback([options, &globals] {
         if (options->section != "presets" && (options->all || !options->text.empty()))
             throw UsageError("TEXT and --all are for `list presets`");

@@ -2,6 +2,7 @@
 #include "command_rows.h"
 #include "job_options.h"
 
+#include <jobs/common/option_words.h>
 #include <jobs/fits/ltc.h>
 
 #include <fmt/format.h>
@@ -32,23 +33,23 @@ void runLtc(const LtcArguments& arguments, const Globals& globals) {
         100 * summary.meanMisplaced, fitted.seconds));
 }
 
+constexpr ArgumentRow ltcArguments[] = {
+    required("MODEL", at<&LtcArguments::spec>,
+             "Model, without the parameter that runs over roughness", {.words = jobs::modelWords}),
+    requiredOutput(at<&LtcArguments::outputs>,
+                   ".json, or NAME.exr or NAME.dds for NAME_1 and NAME_2; may be repeated",
+                   jsonWritten),
+};
+
 }  // namespace
 
-OptionTables ltcRows() {
-    return {jobs::ltcOptions().rows};
+CommandRows ltcRows() {
+    return {ltcArguments, {jobs::ltcOptions().rows}};
 }
 
 void addLtc(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<LtcArguments>();
-    command
-        .add_option("MODEL", arguments->spec,
-                    "Model, without the parameter that runs over roughness")
-        ->required();
-    command
-        .add_option("-o,--output", arguments->outputs,
-                    ".json, or NAME.exr or NAME.dds for NAME_1 and NAME_2; may be repeated")
-        ->required()
-        ->allow_extra_args(false);
+    addArguments(command, ltcArguments, *arguments);
     addOptions(command, jobs::ltcOptions(), arguments->table);
     command.callback([arguments, &globals] { runLtc(*arguments, globals); });
 }

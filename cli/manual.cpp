@@ -3,6 +3,7 @@
 #include "command.h"
 #include "command_table.h"
 #include "help_pages.h"
+#include "job_options.h"
 #include "topics.h"
 
 #include <hshfit/files/file_set.h>
@@ -117,6 +118,16 @@ std::size_t writeManual(const CLI::App& program, const std::filesystem::path& fo
     return 1 + commands().size() + topics().size();
 }
 
+struct ManualArguments {
+    std::string output;
+};
+
+constexpr ArgumentRow manualArguments[] = {
+    requiredOutput(at<&ManualArguments::output>,
+                   "Folder for man1 and man7, such as ~/.local/share/man; made if absent",
+                   {.files = Files::folder}),
+};
+
 }  // namespace
 
 std::string programManual(const CLI::App& program) {
@@ -143,22 +154,24 @@ std::string topicManual(const Topic& topic) {
            seeAlso(reference("hshfit", 1));
 }
 
+CommandRows manualRows() {
+    return {manualArguments, {}};
+}
+
 void addManual(CLI::App& command, Globals& globals) {
-    auto output = std::make_shared<std::string>();
-    command
-        .add_option("-o,--output", *output,
-                    "Folder for man1 and man7, such as ~/.local/share/man; made if absent")
-        ->required();
+    auto arguments = std::make_shared<ManualArguments>();
+    addArguments(command, manualArguments, *arguments);
     const CLI::App* const program = command.get_parent();
-    command.callback([output, program, &globals] {
-        const std::size_t pages = writeManual(*program, *output);
+    command.callback([arguments, program, &globals] {
+        const std::string& output = arguments->output;
+        const std::size_t pages = writeManual(*program, output);
         if (globals.json)
             printJson({{"format", "hshfit-manual"},
                        {"version", 1},
-                       {"output", *output},
+                       {"output", output},
                        {"pages", pages}});
         else
-            note(globals, fmt::format("{}: {} pages in man1 and man7", *output, pages));
+            note(globals, fmt::format("{}: {} pages in man1 and man7", output, pages));
     });
 }
 

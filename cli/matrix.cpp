@@ -2,6 +2,7 @@
 #include "command_rows.h"
 #include "job_options.h"
 
+#include <jobs/common/option_words.h>
 #include <jobs/lighting/rotate.h>
 
 #include <fmt/format.h>
@@ -41,17 +42,21 @@ void runMatrix(const jobs::MatrixOptions& options, const Globals& globals) {
     printText(text);
 }
 
+constexpr ArgumentRow matrixArguments[] = {
+    required("FROM", at<&jobs::MatrixOptions::from>, "Basis of the columns (hshfit list bases)",
+             {.words = jobs::basisWords}),
+    required("TO", at<&jobs::MatrixOptions::to>, "Basis of the rows", {.words = jobs::basisWords}),
+};
+
 }  // namespace
 
-OptionTables matrixRows() {
-    return {jobs::matrixOptions().rows};
+CommandRows matrixRows() {
+    return {matrixArguments, {jobs::matrixOptions().rows}};
 }
 
 void addMatrix(CLI::App& command, Globals& globals) {
     auto options = std::make_shared<jobs::MatrixOptions>();
-    command.add_option("FROM", options->from, "Basis of the columns (hshfit list bases)")
-        ->required();
-    command.add_option("TO", options->to, "Basis of the rows")->required();
+    addArguments(command, matrixArguments, *options);
     addOptions(command, jobs::matrixOptions(), *options);
     command.callback([options, &globals] { runMatrix(*options, globals); });
 }

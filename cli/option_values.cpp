@@ -1,6 +1,6 @@
 #include "option_values.h"
 
-#include "value_table.h"
+#include "option_rows.h"
 
 #include <hshfit/accuracy/metrics.h>
 #include <hshfit/bases/catalog.h>

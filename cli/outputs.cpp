@@ -1,7 +1,7 @@
 #include "outputs.h"
 
 #include "command.h"
-#include "value_table.h"
+#include "option_rows.h"
 
 #include <hshfit/error.h>
 #include <hshfit/files/json_fields.h>

@@ -60,20 +60,23 @@ void runPlan(const PlanArguments& arguments, Globals& globals) {
     }
 }
 
+constexpr ArgumentRow planArguments[] = {
+    required("SCENE", at<&PlanArguments::scene>, "Materials, lights, views and budget, as JSON",
+             {.files = Files::read}),
+    requiredOutput(at<&PlanArguments::output>,
+                   "Folder for the coefficient files, plan.json, plan.csv and plan.html",
+                   {.files = Files::folder}),
+};
+
 }  // namespace
 
-OptionTables planRows() {
-    return {jobs::planOptions().rows, jobs::planLightingOptions().rows};
+CommandRows planRows() {
+    return {planArguments, {jobs::planOptions().rows, jobs::planLightingOptions().rows}};
 }
 
 void addPlan(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<PlanArguments>();
-    command.add_option("SCENE", arguments->scene, "Materials, lights, views and budget, as JSON")
-        ->required();
-    command
-        .add_option("-o,--output", arguments->output,
-                    "Folder for the coefficient files, plan.json, plan.csv and plan.html")
-        ->required();
+    addArguments(command, planArguments, *arguments);
     addOptions(command, jobs::planOptions(), arguments->options);
     addOptions(command, jobs::planLightingOptions(), arguments->lighting);
     command.callback([arguments, &globals] { runPlan(*arguments, globals); });

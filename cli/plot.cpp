@@ -2,6 +2,7 @@
 #include "command_rows.h"
 #include "job_options.h"
 
+#include <jobs/common/option_words.h>
 #include <jobs/studies/plot.h>
 
 #include <fmt/format.h>
@@ -32,17 +33,22 @@ void runPlot(const PlotArguments& arguments, const Globals& globals) {
     }
 }
 
+constexpr ArgumentRow plotArguments[] = {
+    required("BASIS", at<&PlotArguments::basis>, "A basis of hshfit list bases",
+             {.words = jobs::basisWords}),
+    requiredOutput(at<&PlotArguments::output>, "Figure to write: .png, .svg or .pdf",
+                   {.files = Files::written}),
+};
+
 }  // namespace
 
-OptionTables plotRows() {
-    return {jobs::plotOptions().rows};
+CommandRows plotRows() {
+    return {plotArguments, {jobs::plotOptions().rows}};
 }
 
 void addPlot(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<PlotArguments>();
-    command.add_option("BASIS", arguments->basis, "A basis of hshfit list bases")->required();
-    command.add_option("-o,--output", arguments->output, "Figure to write: .png, .svg or .pdf")
-        ->required();
+    addArguments(command, plotArguments, *arguments);
     addOptions(command, jobs::plotOptions(), arguments->options);
     command.callback([arguments, &globals] { runPlot(*arguments, globals); });
 }

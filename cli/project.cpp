@@ -156,25 +156,29 @@ void runProject(const ProjectArguments& arguments, Globals& globals) {
         projectOne(arguments, globals);
 }
 
+std::vector<Word> fileWords() {
+    return {{"json"}, {"exr"}};
+}
+
+constexpr ArgumentRow projectArguments[] = {
+    required("SPEC", at<&ProjectArguments::specs>,
+             "One or more BRDFs; of a folder, the measured files in it", brdfRead),
+    requiredOutput(at<&ProjectArguments::output>,
+                   "Coefficient file, .json or .exr; for many BRDFs, the folder for their files",
+                   jsonWritten),
+    optional("files", at<&ProjectArguments::files>, "With many BRDFs: json or exr",
+             {.words = fileWords, .complete = true}),
+};
+
 }  // namespace
 
-OptionTables projectRows() {
-    return {jobs::projectOptions().rows, jobs::formOptions().rows};
+CommandRows projectRows() {
+    return {projectArguments, {jobs::projectOptions().rows, jobs::formOptions().rows}};
 }
 
 void addProject(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<ProjectArguments>();
-    command
-        .add_option("SPEC", arguments->specs,
-                    "One or more BRDFs; of a folder, the measured files in it")
-        ->required();
-    command
-        .add_option("-o,--output", arguments->output,
-                    "Coefficient file, .json or .exr; for many BRDFs, the folder for their files")
-        ->required();
-    command.add_option("--files", arguments->files, "With many BRDFs: json or exr")
-        ->check(CLI::IsMember({"json", "exr"}))
-        ->capture_default_str();
+    addArguments(command, projectArguments, *arguments);
     addOptions(command, jobs::projectOptions(), arguments->options);
     addOptions(command, jobs::formOptions(), arguments->options.form, "Form");
     command.callback([arguments, &globals] { runProject(*arguments, globals); });

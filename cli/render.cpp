@@ -76,20 +76,22 @@ void runRender(const CLI::App& command, const RenderArguments& arguments, const 
     std::visit(render, sheet);
 }
 
+constexpr ArgumentRow renderArguments[] = {
+    required("SPEC", at<&RenderArguments::specs>,
+             "One or more BRDFs or coefficient files; of a folder, those in it", brdfRead),
+    requiredOutput(at<&RenderArguments::output>, "Picture to write, .png or .exr",
+                   {.files = Files::written, .dash = ".png"}),
+};
+
 }  // namespace
 
-OptionTables renderRows() {
-    return {jobs::sheetOptions().rows};
+CommandRows renderRows() {
+    return {renderArguments, {jobs::sheetOptions().rows}};
 }
 
 void addRender(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<RenderArguments>();
-    command
-        .add_option("SPEC", arguments->specs,
-                    "One or more BRDFs or coefficient files; of a folder, those in it")
-        ->required();
-    command.add_option("-o,--output", arguments->output, "Picture to write, .png or .exr")
-        ->required();
+    addArguments(command, renderArguments, *arguments);
     addOptions(command, jobs::sheetOptions(), arguments->options);
     command.callback([arguments, &globals, &command] { runRender(command, *arguments, globals); });
 }

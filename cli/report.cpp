@@ -86,20 +86,23 @@ void runReport(const ReportArguments& arguments, Globals& globals) {
     reportFailures(reported.failures, reported.specs.size(), globals);
 }
 
+constexpr ArgumentRow reportArguments[] = {
+    required("SPEC", at<&ReportArguments::specs>,
+             "One or more BRDFs; of a folder, the measured files in it", brdfRead),
+    optionalOutput(at<&ReportArguments::output>,
+                   "Folder for pages and figures, made if absent; without it, the table alone",
+                   {.files = Files::folder}),
+};
+
 }  // namespace
 
-OptionTables reportRows() {
-    return {jobs::reportOptions().rows};
+CommandRows reportRows() {
+    return {reportArguments, {jobs::reportOptions().rows}};
 }
 
 void addReport(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<ReportArguments>();
-    command
-        .add_option("SPEC", arguments->specs,
-                    "One or more BRDFs; of a folder, the measured files in it")
-        ->required();
-    command.add_option("-o,--output", arguments->output,
-                       "Folder for pages and figures, made if absent; without it, the table alone");
+    addArguments(command, reportArguments, *arguments);
     addOptions(command, jobs::reportOptions(), arguments->options);
     command.callback([arguments, &globals] { runReport(*arguments, globals); });
 }

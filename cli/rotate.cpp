@@ -47,18 +47,22 @@ void runRotate(const RotateArguments& arguments, const Globals& globals) {
                     100 * done.lostEnergy, done.domain, 100 * done.error));
 }
 
+constexpr ArgumentRow rotateArguments[] = {
+    required("FILE", at<&RotateArguments::input>, "Coefficient file of a BRDF or of light",
+             {.files = Files::read, .dash = ""}),
+    requiredOutput(at<&RotateArguments::output>, "File to write: .json; BRDFs also .exr",
+                   jsonWritten),
+};
+
 }  // namespace
 
-OptionTables rotateRows() {
-    return {jobs::rotateOptions().rows};
+CommandRows rotateRows() {
+    return {rotateArguments, {jobs::rotateOptions().rows}};
 }
 
 void addRotate(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<RotateArguments>();
-    command.add_option("FILE", arguments->input, "Coefficient file of a BRDF or of light")
-        ->required();
-    command.add_option("-o,--output", arguments->output, "File to write: .json; BRDFs also .exr")
-        ->required();
+    addArguments(command, rotateArguments, *arguments);
     addOptions(command, jobs::rotateOptions(), arguments->options);
     command.callback([arguments, &globals] { runRotate(*arguments, globals); });
 }

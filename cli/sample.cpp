@@ -101,18 +101,22 @@ void runSample(const SampleArguments& arguments, const Globals& globals) {
     printText(textOf(done, arguments.output));
 }
 
+constexpr ArgumentRow sampleArguments[] = {
+    required("SPEC", at<&SampleArguments::spec>, "BRDF, coefficient file or sidecar of an export",
+             brdfRead),
+    optionalOutput(at<&SampleArguments::output>, "CSV of the directions, densities and weights",
+                   {.files = Files::written, .dash = ".csv"}),
+};
+
 }  // namespace
 
-OptionTables sampleRows() {
-    return {jobs::sampleOptions().rows};
+CommandRows sampleRows() {
+    return {sampleArguments, {jobs::sampleOptions().rows}};
 }
 
 void addSample(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<SampleArguments>();
-    command.add_option("SPEC", arguments->spec, "BRDF, coefficient file or sidecar of an export")
-        ->required();
-    command.add_option("-o,--output", arguments->output,
-                       "CSV of the directions, densities and weights");
+    addArguments(command, sampleArguments, *arguments);
     addOptions(command, jobs::sampleOptions(), arguments->options);
     command.callback([arguments, &globals] { runSample(*arguments, globals); });
 }

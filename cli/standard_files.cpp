@@ -1,6 +1,6 @@
 #include "standard_files.h"
 
-#include "value_table.h"
+#include "option_rows.h"
 
 #include <hshfit/error.h>
 #include <hshfit/files/standard_streams.h>

@@ -9,7 +9,7 @@ class App;
 namespace hshfit::cli {
 
 /// Lets "-" stand for standard input in the options and arguments of a command that read one file,
-/// and for standard output in those that write one (the rows of value_table.h with a `dash`);
+/// and for standard output in those that write one (the rows of option_rows.h with a `dash`);
 /// "exr:-" is standard output in the format of that extension.
 void acceptStandardStreams(CLI::App& command);
 

@@ -20,18 +20,23 @@ void runStress(const StressArguments& arguments, const Globals& globals) {
     printText(globals.json ? stability::stressJson(report) : stability::stressMarkdown(report));
 }
 
+constexpr ArgumentRow stressArguments[] = {
+    optional("SPEC", at<&StressArguments::options, &jobs::StressOptions::lobes>,
+             "Lobes to project (default: Lambert, and Phong, GGX and Ward to a mirror)", brdfRead),
+    optionalOutput(at<&StressArguments::output>,
+                   "Folder for stress.json, stress.md and stress.csv, made if absent",
+                   {.files = Files::folder}),
+};
+
 }  // namespace
 
-OptionTables stressRows() {
-    return {jobs::stressOptions().rows};
+CommandRows stressRows() {
+    return {stressArguments, {jobs::stressOptions().rows}};
 }
 
 void addStress(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<StressArguments>();
-    command.add_option("SPEC", arguments->options.lobes,
-                       "Lobes to project (default: Lambert, and Phong, GGX and Ward to a mirror)");
-    command.add_option("-o,--output", arguments->output,
-                       "Folder for stress.json, stress.md and stress.csv, made if absent");
+    addArguments(command, stressArguments, *arguments);
     addOptions(command, jobs::stressOptions(), arguments->options);
     command.callback([arguments, &globals] { runStress(*arguments, globals); });
 }

@@ -195,23 +195,25 @@ void runSvbrdf(SvbrdfArguments& arguments, const CLI::App& command, const Global
     std::visit([&](const auto& made) { print(made, globals); }, done);
 }
 
+constexpr ArgumentRow svbrdfArguments[] = {
+    required("DESCRIPTION", at<&SvbrdfArguments::description>,
+             "A model and its parameters, numbers or maps, as JSON",
+             {.files = Files::read, .dash = ".json"}),
+    requiredOutput(at<&SvbrdfArguments::output>,
+                   "Folder for material.ktx2, material.json, errors.png and, of harmonics, "
+                   "harmonics.ktx2, of halfway, the materials, of library, material.library",
+                   {.files = Files::folder}),
+};
+
 }  // namespace
 
-OptionTables svbrdfRows() {
-    return {jobs::mapOptions().rows};
+CommandRows svbrdfRows() {
+    return {svbrdfArguments, {jobs::mapOptions().rows}};
 }
 
 void addSvbrdf(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<SvbrdfArguments>();
-    command
-        .add_option("DESCRIPTION", arguments->description,
-                    "A model and its parameters, numbers or maps, as JSON")
-        ->required();
-    command
-        .add_option("-o,--output", arguments->output,
-                    "Folder for material.ktx2, material.json, errors.png and, of harmonics, "
-                    "harmonics.ktx2, of halfway, the materials, of library, material.library")
-        ->required();
+    addArguments(command, svbrdfArguments, *arguments);
     addOptions(command, jobs::mapOptions(), arguments->options);
     command.callback([arguments, &command, &globals] { runSvbrdf(*arguments, command, globals); });
 }

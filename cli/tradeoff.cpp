@@ -51,20 +51,24 @@ void runTradeoff(const TradeoffArguments& arguments, Globals& globals) {
     reportFailures(measured.failures, measured.specs.size(), globals);
 }
 
+constexpr ArgumentRow tradeoffArguments[] = {
+    required("SPEC", at<&TradeoffArguments::specs>,
+             "One or more BRDFs; of a folder, the measured files in it", brdfRead),
+    optionalOutput(at<&TradeoffArguments::output>, "Folder to write, made if absent",
+                   {.files = Files::folder}),
+};
+
 }  // namespace
 
-OptionTables tradeoffRows() {
-    return {jobs::sweepOptions().rows, jobs::tradeoffOptions().rows,
-            jobs::lightingTradeOptions().rows};
+CommandRows tradeoffRows() {
+    return {tradeoffArguments,
+            {jobs::sweepOptions().rows, jobs::tradeoffOptions().rows,
+             jobs::lightingTradeOptions().rows}};
 }
 
 void addTradeoff(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<TradeoffArguments>();
-    command
-        .add_option("SPEC", arguments->specs,
-                    "One or more BRDFs; of a folder, the measured files in it")
-        ->required();
-    command.add_option("-o,--output", arguments->output, "Folder to write, made if absent");
+    addArguments(command, tradeoffArguments, *arguments);
     addOptions(command, jobs::sweepOptions(), arguments->options.sweep, "What is tried");
     addOptions(command, jobs::tradeoffOptions(), arguments->options);
     addOptions(command, jobs::lightingTradeOptions(), arguments->lighting);

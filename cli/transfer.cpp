@@ -70,20 +70,23 @@ void runTransfer(const TransferArguments& arguments, const Globals& globals) {
     printText(textOf(done));
 }
 
+constexpr ArgumentRow transferArguments[] = {
+    required("SCENE", at<&TransferArguments::scene>, "Materials, objects and cameras, as JSON",
+             {.files = Files::read}),
+    requiredOutput(at<&TransferArguments::output>,
+                   "Folder for transfer.tensor, transfer.json, the page and pictures",
+                   {.files = Files::folder}),
+};
+
 }  // namespace
 
-OptionTables transferRows() {
-    return {jobs::transferOptions().rows};
+CommandRows transferRows() {
+    return {transferArguments, {jobs::transferOptions().rows}};
 }
 
 void addTransfer(CLI::App& command, Globals& globals) {
     auto arguments = std::make_shared<TransferArguments>();
-    command.add_option("SCENE", arguments->scene, "Materials, objects and cameras, as JSON")
-        ->required();
-    command
-        .add_option("-o,--output", arguments->output,
-                    "Folder for transfer.tensor, transfer.json, the page and pictures")
-        ->required();
+    addArguments(command, transferArguments, *arguments);
     addOptions(command, jobs::transferOptions(), arguments->options);
     command.callback([arguments, &globals] { runTransfer(*arguments, globals); });
 }

@@ -1,12 +1,12 @@
-// Laws of the table of values: an option that names a file is in it, and those that name what is
-// written keep to the folder of an item of a batch.
+// Laws of the rows of arguments and options: each has one, it names its files, and those that name
+// what is written keep to the folder of an item of a batch.
 
 #include "program.h"
 
 #include <cli/batch_program.h>
 #include <cli/command.h>
 #include <cli/command_table.h>
-#include <cli/value_table.h>
+#include <cli/option_rows.h>
 
 #include <jobs/batches/program.h>
 
@@ -49,7 +49,7 @@ const std::set<std::string> plainTexts{"--axis",
                                        "--wo",
                                        "WORDS"};
 
-class ValueTable : public test::Cli {
+class OptionRows : public test::Cli {
 protected:
     void SetUp() override {
         Cli::SetUp();
@@ -79,7 +79,7 @@ protected:
     CLI::App app_{"", "hshfit"};
 };
 
-TEST_F(ValueTable, EveryOptionOfFreeTextStatesItsFilesOrNamesNone) {
+TEST_F(OptionRows, EveryOptionOfFreeTextStatesItsFilesOrNamesNone) {
     std::set<std::string> left = plainTexts;
     for (const CLI::App* command : app_.get_subcommands({})) {
         for (const CLI::Option* option : command->get_options()) {
@@ -92,26 +92,34 @@ TEST_F(ValueTable, EveryOptionOfFreeTextStatesItsFilesOrNamesNone) {
             left.erase(name);
             EXPECT_TRUE(plainTexts.contains(name))
                 << command->get_name() << " " << name
-                << ": give it a row in cli/value_table.cpp, with its files, or name it above";
+                << ": give it a row in cli/option_rows.cpp, with its files, or name it above";
         }
     }
     EXPECT_EQ(left, std::set<std::string>{});
 }
 
-/// A row of a job's own hides one of the table.
-TEST_F(ValueTable, EveryRowIsForAnOptionThatIsThereAndHasNoRowOfItsJob) {
-    for (const ValueRow& row : valueTable()) {
-        bool found = false;
-        for (const CLI::App* command : app_.get_subcommands({})) {
-            if (!row.command.empty() && row.command != command->get_name()) continue;
-            for (const CLI::Option* option : command->get_options())
-                found |= findValues(*command, *option) == &row.values;
+TEST_F(OptionRows, EveryArgumentAndOptionIsOfOneRow) {
+    const std::set<std::string> ofEveryCommand{"help", "json", "quiet", "threads", "force"};
+    for (const Command& row : commands()) {
+        const CLI::App& command = *app_.get_subcommand(row.name);
+        std::map<const jobs::OptionRow*, std::size_t> uses;
+        for (const CLI::Option* option : command.get_options()) {
+            const jobs::OptionRow* found = findRow(command, *option);
+            if (found) ++uses[found];
+            const bool every = !option->get_lnames().empty() &&
+                               ofEveryCommand.contains(option->get_lnames().front());
+            EXPECT_TRUE(found || every) << row.name << " " << option->get_name(true);
         }
-        EXPECT_TRUE(found) << row.command << " " << row.option;
+        const CommandRows rows = row.options();
+        for (const ArgumentRow& argument : rows.arguments)
+            EXPECT_EQ(uses[&argument.row], 1U) << row.name << " " << argument.row.name;
+        for (const auto table : rows.options)
+            for (const jobs::OptionRow& option : table)
+                EXPECT_GE(uses[&option], 1U) << row.name << " " << option.name;
     }
 }
 
-TEST_F(ValueTable, FilesThatABatchWritesByOptionsAreNamedWithinTheItem) {
+TEST_F(OptionRows, FilesThatABatchWritesByOptionsAreNamedWithinTheItem) {
     std::map<std::string, std::set<std::string>> tried;
     const jobs::BatchProgram program = batchProgram();
     for (const jobs::BatchCommand& command : program.commands) {
@@ -154,7 +162,7 @@ TEST_F(ValueTable, FilesThatABatchWritesByOptionsAreNamedWithinTheItem) {
 }
 
 /// Two options of one item may not name one file.
-TEST_F(ValueTable, FilesOfAnItemHaveNamesOfTheirOwn) {
+TEST_F(OptionRows, FilesOfAnItemHaveNamesOfTheirOwn) {
     const jobs::BatchProgram program = batchProgram();
     const jobs::BatchCommand& fit =
         *std::ranges::find(program.commands, "fit", &jobs::BatchCommand::name);
