@@ -114,6 +114,8 @@ bool isItemwise(const CLI::App& command, const Words& words) {
     const std::string& name = command.get_name();
     if (name == "fit") return command.get_option("--all")->count() > 0;
     if (name == "convert") return command.get_option("--output")->count() > 0;
+    // One BRDF goes to a file, and the job says so.
+    if (name == "project" && std::filesystem::is_directory(words.outputs.front())) return true;
     const bool isCompare = name == "compare";
     if (isCompare && words.inputs.size() == 2)
         return jobs::areMany({words.inputs[0]}) || jobs::areMany({words.inputs[1]});

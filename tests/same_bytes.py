@@ -37,10 +37,20 @@ def state_of(folders):
 
 
 def restore(folders, kept):
+    """Files keep their inodes, since the shell of a command may have one of them open."""
     for number, folder in enumerate(folders):
-        for entry in Path(folder).iterdir():
-            shutil.rmtree(entry) if entry.is_dir() and not entry.is_symlink() else entry.unlink()
-        shutil.copytree(Path(kept) / str(number), folder, symlinks=True, dirs_exist_ok=True)
+        source = Path(kept) / str(number)
+        for path in sorted(Path(folder).rglob("*"), reverse=True):
+            if path.is_symlink() or not os.path.lexists(source / path.relative_to(folder)):
+                path.rmdir() if path.is_dir() and not path.is_symlink() else path.unlink()
+        shutil.copytree(source, folder, symlinks=True, dirs_exist_ok=True, copy_function=put)
+
+
+def put(source, target):
+    """Copies a file unless the target has its bytes and its times."""
+    if not os.path.isfile(target) or Path(target).read_bytes() != Path(source).read_bytes():
+        shutil.copyfile(source, target)
+    shutil.copystat(source, target)
 
 
 def answer(program, arguments, folders, stdin):

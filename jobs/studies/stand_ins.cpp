@@ -62,7 +62,11 @@ std::string formName(const Form& form) {
         return fmt::format("halfway {},{},{}", o.half, o.difference, o.azimuth) + precision;
     }
     const std::string where =
-        form.kind == Kind::basis ? ", both directions" : fmt::format(" at {}", form.outgoing);
+        form.kind == Kind::basis
+            ? ", both directions"
+            : fmt::format(
+                  " at {} {}", form.outgoing,
+                  form.outgoing.find('x') == std::string::npos ? "elevations" : "directions");
     return fmt::format("{} of order {}{}", form.basis, form.order, where) + precision;
 }
 
