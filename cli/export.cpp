@@ -258,36 +258,6 @@ jobs::MapExportOptions mapOptions(const ExportArguments& arguments) {
     return options;
 }
 
-/// The options of textures that lighting shares.
-void runLighting(const ExportArguments& arguments, const Globals& globals) {
-    const jobs::ExportOptions& shared = arguments.options;
-    jobs::LightingExportOptions options = arguments.lighting;
-    options.targets = shared.targets;
-    options.name = shared.name;
-    options.source = shared.source;
-    options.prefix = shared.shader.prefix;
-    options.number = shared.number;
-    options.measureError = shared.measureError;
-    options.force = shared.force;
-    options.errors.tables.order = shared.shader.environmentOrder;
-    if (!shared.lights.empty()) options.light = fmt::format("{}", fmt::join(shared.lights, "+"));
-    // Errors under the light that is written, and under those of the catalog.
-    options.errors.lights = lightExamples();
-    if (!shared.lights.empty())
-        options.errors.lights.insert(options.errors.lights.begin(), options.light);
-    runExportLighting(arguments.inputs[0], arguments.output, options, globals);
-}
-
-void runMaterials(const ExportArguments& arguments, Globals& globals) {
-    const jobs::ExportOptions& shared = arguments.options;
-    jobs::MaterialExportOptions options = arguments.material;
-    options.targets = shared.targets;
-    options.name = shared.name;
-    options.source = shared.source;
-    options.force = shared.force;
-    runMaterialExport(arguments.inputs[0], arguments.output, options, globals);
-}
-
 std::string answerText(const Json& answer) {
     if constexpr (isBuilt(Wing::maps))
         if (isMapDocument(answer)) return mapDocumentText(answer);
@@ -358,9 +328,12 @@ void runExport(const ExportArguments& arguments, const CLI::App& command, Global
             "export: the targets gltf, materialx and usd and --lighting take one input");
     if (kind == exports::lighting) {
         requirePrefiltered(command, arguments.lighting.models);
-        return runLighting(arguments, globals);
+        return runExportLighting(arguments.inputs[0], arguments.output,
+                                 withShared(arguments.options, arguments.lighting), globals);
     }
-    if (kind == exports::materials) return runMaterials(arguments, globals);
+    if (kind == exports::materials)
+        return runMaterialExport(arguments.inputs[0], arguments.output,
+                                 withShared(arguments.options, arguments.material), globals);
     many ? exportMany(arguments, globals) : exportOne(arguments, globals);
 }
 

@@ -14,17 +14,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The sidecar without what its readers alone need.
-Json lightingAnswer(const jobs::LightingExport& exported, const std::string& folder) {
-    Json answer = exported.sidecar;
-    answer["folder"] = folder;
-    answer["files"] = exported.files;
-    for (Json& model : answer["models"])
-        for (const char* array : {"light", "irradiance", "areas", "cube"}) model.erase(array);
-    answer["tests"] = answer["tests"].size();
-    return answer;
-}
-
 /// The error of a prefiltered environment over all turns of the light.
 std::string turnedText(const Json& error) {
     return error.contains("turned_l2")
@@ -73,7 +62,7 @@ void runExportLighting(const std::string& coefficients, const std::string& folde
                        const jobs::LightingExportOptions& options, const Globals& globals) {
     const jobs::LightingExport exported =
         jobs::exportLighting(coefficients, folder, options, listenerFor(globals));
-    const Json answer = lightingAnswer(exported, folder);
+    const Json answer = jobs::lightingJson(exported, folder);
     if (globals.json)
         printJson(answer);
     else

@@ -11,30 +11,6 @@
 namespace hshfit::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json document(const jobs::ExportedMaterials& exported, const std::string& folder) {
-    Json document = {{"format", "hshfit-export-materials"},
-                     {"version", 1},
-                     {"folder", folder},
-                     {"name", exported.name},
-                     {"source", exported.source},
-                     {"vertices", exported.vertices},
-                     {"triangles", exported.triangles},
-                     {"files", Json::array()}};
-    for (const jobs::ExportedMaterial& file : exported.files) {
-        Json json = {{"target", file.target}, {"path", file.path},
-                     {"bytes", file.bytes},   {"spec", file.spec},
-                     {"fitted", file.fitted}, {"converged", file.converged}};
-        if (file.search) json["parts"] = brdfs::searchJson(*file.search);
-        json["loss"] = jobs::lossJson(file);
-        if (file.poor) json["poor"] = jobs::poorJson(*file.poor);
-        if (!file.pictures.empty()) json["pictures"] = file.pictures;
-        document["files"].push_back(std::move(json));
-    }
-    return document;
-}
-
 std::string text(const jobs::ExportedMaterials& exported, const std::string& folder) {
     std::string out;
     for (const jobs::ExportedMaterial& file : exported.files) {
@@ -69,7 +45,7 @@ void runMaterialExport(const std::string& input, const std::string& folder,
     for (const jobs::ExportedMaterial& file : exported.files)
         if (file.poor) note(globals, fmt::format("{}: {}", file.path, file.poor->line()));
     if (globals.json)
-        printJson(document(exported, folder));
+        printJson(jobs::materialsJson(exported, folder));
     else
         printText(text(exported, folder));
 }

@@ -114,7 +114,7 @@ bool isItemwise(const CLI::App& command, const Words& words) {
     const std::string& name = command.get_name();
     if (name == "fit") return command.get_option("--all")->count() > 0;
     if (name == "convert") return command.get_option("--output")->count() > 0;
-    // One BRDF goes to a file, and the job says so.
+    // One BRDF goes to a file; the job refuses a folder.
     if (name == "project" && std::filesystem::is_directory(words.outputs.front())) return true;
     const bool isCompare = name == "compare";
     if (isCompare && words.inputs.size() == 2)

@@ -9,7 +9,6 @@
 #include <hshfit/error.h>
 #include <hshfit/files/json_fields.h>
 
-#include <jobs/exports/export.h>
 #include <jobs/exports/sample.h>
 #include <jobs/studies/convert.h>
 #include <jobs/studies/import.h>
@@ -60,49 +59,6 @@ py::dict converted(const py::object& input, const py::object& output, const py::
         done = jobs::convert(from, to, options, listener);
     });
     return convertedDict(done);
-}
-
-/// The options of coefficients.
-Options optionsOf(jobs::ExportOptions& options) {
-    Options own = boundOptions(jobs::exportOptions(), options);
-    std::erase_if(own, [](const jobs::BoundOption& option) {
-        return (option.row->inputs & jobs::exports::coefficients) == 0;
-    });
-    return own;
-}
-
-py::dict exportedDict(const jobs::Exported& done) {
-    py::dict out;
-    py::list files;
-    const auto add = [&](const std::string& role, const std::string& target,
-                         const std::string& path) {
-        py::dict file;
-        file["role"] = role;
-        file["target"] = target;
-        file["path"] = path;
-        files.append(file);
-    };
-    for (const gpu::ExportedFile& file : done.textures)
-        add(std::string(gpu::roleName(file.role)), std::string(file.container), file.path);
-    for (const jobs::ExportedText& file : done.texts) add(file.role, file.target, file.path);
-    out["name"] = done.name;
-    out["sidecar"] = done.sidecar;
-    out["files"] = files;
-    out["fit_error"] = fromJson(jobs::errorJson(done.error));
-    out["poor"] = poorDict(done.poor);
-    return out;
-}
-
-py::dict exported(const py::object& coefficients, const py::object& folder,
-                  const py::kwargs& keywords) {
-    jobs::ExportOptions options;
-    const py::object progress = optionsFrom(keywords, optionsOf(options));
-    const std::string from = pathOf(coefficients, "coefficients"), to = pathOf(folder, "folder");
-    jobs::Exported done;
-    watched(progress, {}, [&](const jobs::Listener& listener) {
-        done = jobs::exportCoefficients(from, to, options, listener);
-    });
-    return exportedDict(done);
 }
 
 void imported(const py::object& input, const py::object& output, const py::kwargs& keywords) {
@@ -180,15 +136,7 @@ py::dict sampled(const py::object& spec, const py::object& outgoing, const py::k
     return out;
 }
 
-void bindExport(py::module_& module) {
-    jobs::ExportOptions options;
-    define(module,
-           {"export", "coefficients: Path, folder: Path", optionsOf(options), "Row",
-            R"(Export a coefficient file to a folder: textures, shaders, a viewer.
-
-Returns a dict: "files" (role, target, path), "fit_error" against the source, "poor". All files are
-written, or none.)"},
-           exported, py::arg("coefficients"), py::arg("folder"));
+void bindImport(py::module_& module) {
     jobs::ImportOptions imports;
     define(module,
            {"import_coefficients",
@@ -215,7 +163,7 @@ open() takes, a Brdf. Raises InputError that names the file and the field.)");
             R"(Write the BRDF of a specification or path in the format of other programs
 (catalog("writers")). Returns a dict as Brdf.write() does.)"},
            converted, py::arg("input"), py::arg("output"));
-    bindExport(module);
+    bindImport(module);
     jobs::InfoOptions info;
     define(module,
            {"describe", "spec: Path", boundOptions(jobs::infoOptions(), info), "Row",

@@ -65,6 +65,7 @@ PYBIND11_MODULE(_hshfit, module) {
     bindScenes(module);
     bindMaterialMaps(module);
     bindTrades(module);
+    bindExports(module);
     bindFiles(module);
     bindCatalog(module);
 }

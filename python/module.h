@@ -25,6 +25,7 @@ void bindRotation(py::module_& module);
 void bindScenes(py::module_& module);
 void bindMaterialMaps(py::module_& module);
 void bindTrades(py::module_& module);
+void bindExports(py::module_& module);
 void bindFiles(py::module_& module);
 void bindCatalog(py::module_& module);
 

@@ -20,6 +20,11 @@ inline Parameter linearIf(Parameter parameter, bool (*linear)(const Parameters& 
     return parameter;
 }
 
+inline Parameter inRole(Parameter parameter, Parameter::Role role) {
+    parameter.role = role;
+    return parameter;
+}
+
 /// Parameter::linear of a scale.
 inline bool alwaysLinear(const Parameters&) {
     return true;
@@ -42,7 +47,8 @@ inline Parameter kdParameter(double fallback, double most) {
             .min = 0,
             .max = most,
             .fit = {{.low = 0, .high = 1}},
-            .linear = alwaysLinear};
+            .linear = alwaysLinear,
+            .role = Parameter::Role::weight};
 }
 
 inline Parameter ksParameter(std::string_view help, double most = 1e6) {
@@ -53,7 +59,8 @@ inline Parameter ksParameter(std::string_view help, double most = 1e6) {
             .min = 0,
             .max = most,
             .fit = {{.low = 0, .high = 1}},
-            .linear = alwaysLinear};
+            .linear = alwaysLinear,
+            .role = Parameter::Role::weight};
 }
 
 inline Parameter f0Parameter() {
@@ -63,7 +70,8 @@ inline Parameter f0Parameter() {
             .fallback = 1,
             .min = 0,
             .max = 1,
-            .linear = linearUnderStatedScale};
+            .linear = linearUnderStatedScale,
+            .role = Parameter::Role::weight};
 }
 
 inline Parameter exponentParameter(std::string_view name, std::string_view help, FitRange fit) {

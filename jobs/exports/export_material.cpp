@@ -21,6 +21,7 @@
 #include <hshfit/wording.h>
 
 #include <brdfs/catalog.h>
+#include <brdfs/fit/fit_json.h>
 #include <brdfs/rows/spec.h>
 
 #include <fmt/format.h>
@@ -350,6 +351,36 @@ Json lossJson(const ExportedMaterial& material) {
                    {"theta_to", degrees(loss.albedoTo)}}}};
     if (material.picture) json["picture"] = pictureErrorJson(*material.picture);
     return json;
+}
+
+Json materialsJson(const ExportedMaterials& exported, const std::string& folder) {
+    Json document = {{"format", "hshfit-export-materials"},
+                     {"version", 1},
+                     {"folder", folder},
+                     {"name", exported.name},
+                     {"source", exported.source},
+                     {"vertices", exported.vertices},
+                     {"triangles", exported.triangles},
+                     {"files", Json::array()}};
+    for (const ExportedMaterial& file : exported.files) {
+        Json json = {{"target", file.target}, {"path", file.path},
+                     {"bytes", file.bytes},   {"spec", file.spec},
+                     {"fitted", file.fitted}, {"converged", file.converged}};
+        if (file.search) json["parts"] = brdfs::searchJson(*file.search);
+        json["loss"] = lossJson(file);
+        if (file.poor) json["poor"] = poorJson(*file.poor);
+        if (!file.pictures.empty()) json["pictures"] = file.pictures;
+        document["files"].push_back(std::move(json));
+    }
+    return document;
+}
+
+MaterialExportOptions withShared(const ExportOptions& shared, MaterialExportOptions own) {
+    own.targets = shared.targets;
+    own.name = shared.name;
+    own.source = shared.source;
+    own.force = shared.force;
+    return own;
 }
 
 ExportedMaterials makeMaterials(const std::string& text, const MaterialExportOptions& options,

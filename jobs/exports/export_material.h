@@ -2,6 +2,7 @@
 
 #include <jobs/common/listener.h>
 #include <jobs/common/option_row.h>
+#include <jobs/exports/export.h>
 #include <jobs/source/quality.h>
 
 #include <brdfs/fit/choose_parts.h>
@@ -30,6 +31,8 @@ struct MaterialExportOptions {
 };
 /// The options that materials alone have.
 OptionRows<MaterialExportOptions> materialExportOptions();
+/// `own` with those that exports of coefficients have, too.
+MaterialExportOptions withShared(const ExportOptions& shared, MaterialExportOptions own);
 
 /// One file: a standard material.
 struct ExportedMaterial {
@@ -52,6 +55,9 @@ struct ExportedMaterials {
     std::size_t vertices = 0, triangles = 0;
     std::vector<ExportedMaterial> files;
 };
+
+/// The answer "hshfit-export-materials" (docs/schemas/export_materials.schema.json).
+nlohmann::ordered_json materialsJson(const ExportedMaterials& exported, const std::string& folder);
 
 /// The name of files made from a BRDF or a coefficient file: its path's stem, or the preset's or
 /// model's name.

@@ -19,6 +19,7 @@
 #include <hshfit/wording.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -316,6 +317,33 @@ LightingExport exportLighting(const std::string& path, const std::string& folder
     output.files.commit();
     result.files = std::move(output.names);
     return result;
+}
+
+LightingExportOptions withShared(const ExportOptions& shared, LightingExportOptions own) {
+    own.targets = shared.targets;
+    own.name = shared.name;
+    own.source = shared.source;
+    own.prefix = shared.shader.prefix;
+    own.number = shared.number;
+    own.measureError = shared.measureError;
+    own.force = shared.force;
+    own.errors.tables.order = shared.shader.environmentOrder;
+    own.errors.lights = lightExamples();
+    if (!shared.lights.empty()) {
+        own.light = fmt::format("{}", fmt::join(shared.lights, "+"));
+        own.errors.lights.insert(own.errors.lights.begin(), own.light);
+    }
+    return own;
+}
+
+Json lightingJson(const LightingExport& exported, const std::string& folder) {
+    Json answer = exported.sidecar;
+    answer["folder"] = folder;
+    answer["files"] = exported.files;
+    for (Json& model : answer["models"])
+        for (const char* array : {"light", "irradiance", "areas", "cube"}) model.erase(array);
+    answer["tests"] = answer["tests"].size();
+    return answer;
 }
 
 }  // namespace hshfit::jobs

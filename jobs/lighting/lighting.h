@@ -3,6 +3,7 @@
 #include "lighting_errors.h"
 
 #include <jobs/common/option_row.h>
+#include <jobs/exports/export.h>
 
 #include <hshfit/gpu/texels.h>
 
@@ -32,12 +33,18 @@ struct LightingExportOptions {
 };
 
 OptionRows<LightingExportOptions> lightingExportOptions();
+/// `own` with those that exports of coefficients have, too. Errors are measured under the light
+/// that is written, if one is stated, and under those of the catalog.
+LightingExportOptions withShared(const ExportOptions& shared, LightingExportOptions own);
 
 struct LightingExport {
     /// The sidecar: tables, the light, shaders, tests, errors (docs/schemas/lighting.schema.json).
     nlohmann::ordered_json sidecar;
     std::vector<std::string> files;  ///< names in the folder
 };
+
+/// The sidecar without what its readers alone need, as the answer of a command.
+nlohmann::ordered_json lightingJson(const LightingExport& exported, const std::string& folder);
 
 /// Tables by elevation, and by azimuth where it is not isotropic, of the BRDF in a coefficient file
 /// of any form, for each of the models, with one light made ready for them, as textures, shaders

@@ -1,6 +1,5 @@
 #include "facet_surface.h"
 
-#include <hshfit/brdf/uniform.h>
 #include <hshfit/brdf/vectors.h>
 #include <hshfit/error.h>
 #include <hshfit/normal_filtering/surface_frame.h>
@@ -9,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 namespace hshfit::jobs {
 namespace {
@@ -17,10 +15,6 @@ namespace {
 constexpr double nodeTolerance = 0.01;  // of D between nodes, relative to its norm
 constexpr std::size_t mostNodes = 65;
 constexpr int nodeOrder = 33;
-
-bool close(double a, double b) {
-    return std::abs(a - b) <= 1e-9 * (std::abs(a) + std::abs(b));
-}
 
 /// The factors of the terms of the lobe, and of the smooth part last, of a grey BRDF.
 std::vector<double> factorsOf(const brdfs::FacetNormals& normals) {
@@ -129,23 +123,23 @@ void FacetSurface::classify(const ParameterMaps& maps) {
     for (std::size_t k = 0; k < varying_.size(); ++k) {
         Varying& v = varying_[k];
         const Parameter& row = *maps.varying()[k].row;
-        // A map of one value is judged by others that the model takes.
-        const double low = std::max(row.min, 0.0), high = row.max >= low + 1 ? low + 1 : row.max;
-        const double from = v.high > v.low ? v.low : low + 0.2 * (high - low),
-                     to = v.high > v.low ? v.high : low + 0.8 * (high - low);
-        const bool terms = changesTerms(k, from, to), weights = changesWeights(k, from, to);
-        if (terms && weights) {
-            throw InputError(fmt::format(
-                "{} changes both the lobe and its weight, so that it has to be the same for all "
-                "texels of a filtered map",
-                v.name));
-        }
-        if (!terms) {
-            v.factor = true;
-            v.low = low;
-            v.high = high;
-            factors_.push_back(k);
-            continue;
+        switch (row.role) {
+            case Parameter::Role::turn:
+                throw InputError(fmt::format(
+                    "{} turns the lobe; state \"direction\" in the description", v.name));
+            case Parameter::Role::both:
+                throw InputError(fmt::format(
+                    "{} changes both the lobe and its weight, so that it has to be the same for "
+                    "all texels of a filtered map",
+                    v.name));
+            case Parameter::Role::weight:
+                v.factor = true;
+                v.low = std::max(row.min, 0.0);
+                v.high = std::min(row.max, v.low + 1);
+                factors_.push_back(k);
+                continue;
+            case Parameter::Role::shape:
+                break;
         }
         if (v.channels > 1) {
             throw InputError(fmt::format(
@@ -158,44 +152,8 @@ void FacetSurface::classify(const ParameterMaps& maps) {
     if (factors_.size() > 8) throw InputError("more than 8 of its maps are factors");
 }
 
-/// Whether terms that count, D, or the axes of D change with parameter k.
-bool FacetSurface::changesTerms(std::size_t k, double low, double high) const {
-    std::vector<double> values = middle();
-    values[k] = low;
-    const FacetLobe a(specification(values));
-    values[k] = high;
-    const FacetLobe b(specification(values));
-    if (!close(a.normals().turn, b.normals().turn)) {
-        throw InputError(fmt::format("{} turns the lobe; state \"direction\" in the description",
-                                     varying_[k].name));
-    }
-    std::mt19937_64 random(1);
-    for (int trial = 0; trial < 24; ++trial) {
-        const auto drawn = [&] {
-            return directionFromAngles(std::acos(0.05 + 0.95 * uniform(random)),
-                                       2 * pi * uniform(random));
-        };
-        const Direction wi = drawn(), wo = drawn();
-        double ta[brdfs::TermBatch::maxTerms] = {}, tb[brdfs::TermBatch::maxTerms] = {};
-        a.facets->terms(wi, wo, ta);
-        b.facets->terms(wi, wo, tb);
-        for (std::size_t t = 0; t < a.normals().ofLobe.size(); ++t)
-            if (!close(ta[t], tb[t])) return true;
-        const Direction h = normalised(wi + wo);
-        if (!close(a.normals().density(h), b.normals().density(h))) return true;
-    }
-    return false;
-}
-
-bool FacetSurface::changesWeights(std::size_t k, double low, double high) const {
-    std::vector<double> values = middle();
-    values[k] = low;
-    const std::vector<double> a = factorsOf(FacetLobe(specification(values)).normals());
-    values[k] = high;
-    const std::vector<double> b = factorsOf(FacetLobe(specification(values)).normals());
-    return !std::ranges::equal(a, b, close);
-}
-
+/// Weights are affine in each parameter with that role: the corners of their ranges give the
+/// others.
 void FacetSurface::findCorners() {
     std::vector<double> values = middle();
     const auto at = [&] { return factorsOf(FacetLobe(specification(values)).normals()); };
@@ -207,23 +165,6 @@ void FacetSurface::findCorners() {
         corners_.push_back(at());
     }
     lobeTerms_ = corners_.front().size() - 1;
-    // Affine in each: the corners give the factors at any other place.
-    std::mt19937_64 random(2);
-    std::vector<float> texel(maps_.valuesOfTexel());
-    for (int trial = 0; trial < 8; ++trial) {
-        for (const std::size_t k : factors_) {
-            const Varying& v = varying_[k];
-            // A value that a float has.
-            const auto drawn = static_cast<float>(v.low + uniform(random) * (v.high - v.low));
-            values[k] = static_cast<double>(drawn);
-            for (std::size_t c = 0; c < v.channels; ++c) texel[v.first + c] = drawn;
-        }
-        const std::vector<double> direct = at(), mixed = columns(texel, 1);
-        for (std::size_t t = 0; t < direct.size(); ++t) {
-            if (std::abs(direct[t] - mixed[t * channels_]) > 1e-6 * (1 + std::abs(direct[t])))
-                throw InputError("a map changes the weight of the lobe in no affine way");
-        }
-    }
 }
 
 /// The distance of D at the middle of each interval of nodes from the mean of its ends, relative to

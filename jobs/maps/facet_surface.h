@@ -45,8 +45,6 @@ private:
     std::string specification(const std::vector<double>& values) const;
     std::vector<double> middle() const;
     void classify(const ParameterMaps& maps);
-    bool changesTerms(std::size_t k, double low, double high) const;
-    bool changesWeights(std::size_t k, double low, double high) const;
     void findCorners();
     std::vector<double> intervalErrors(const std::string& model, std::size_t node) const;
     void findNodes();

@@ -8,7 +8,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 namespace {
 
@@ -68,6 +71,92 @@ TEST_P(FacetNormalsOf, DistributionsAreNormalised) {
     EXPECT_NEAR(sum, 1, 1e-6);
 }
 
+/// A facet model at one setting, with one parameter at a value of its own.
+struct Setting {
+    std::string model;
+    std::vector<std::pair<std::string, std::string>> values;
+
+    explicit Setting(const std::string& spec) : model(spec.substr(0, spec.find(':'))) {
+        for (std::size_t from = model.size() + 1; from < spec.size();) {
+            const std::size_t equals = spec.find('=', from);
+            const std::size_t comma = std::min(spec.find(',', equals), spec.size());
+            values.emplace_back(spec.substr(from, equals - from),
+                                spec.substr(equals + 1, comma - equals - 1));
+            from = comma + 1;
+        }
+    }
+    std::unique_ptr<Brdf> with(std::string_view name, double value) const {
+        std::string spec = model + ":" + std::string(name) + "=" + std::to_string(value);
+        for (const auto& [key, stated] : values)
+            if (key != name) spec += "," + key + "=" + stated;
+        return brdfs::openModel(spec);
+    }
+};
+
+const brdfs::FacetNormals& normalsOf(const Brdf& brdf) {
+    return dynamic_cast<const brdfs::HasFacetNormals&>(brdf).facetNormals();
+}
+
+/// Weights of all terms, then the constant, of the first channel.
+std::vector<double> weightsOf(const Brdf& brdf) {
+    const brdfs::TermWeights& weights = normalsOf(brdf).weights;
+    std::vector<double> all;
+    for (const brdfs::Colour& term : weights.terms) all.push_back(term[0]);
+    all.push_back(weights.constant[0]);
+    return all;
+}
+
+/// The densities of normals and the terms in many directions.
+std::vector<double> shapeOf(const Brdf& brdf) {
+    std::mt19937_64 random(1);
+    std::vector<double> all;
+    for (int trial = 0; trial < 30; ++trial) {
+        const auto drawn = [&] {
+            return directionFromAngles(std::acos(0.05 + 0.95 * uniform(random)),
+                                       2 * pi * uniform(random));
+        };
+        const Direction wi = drawn(), wo = drawn();
+        double terms[brdfs::TermBatch::maxTerms] = {};
+        dynamic_cast<const brdfs::HasFacetNormals&>(brdf).terms(wi, wo, terms);
+        all.insert(all.end(), terms, terms + normalsOf(brdf).ofLobe.size());
+        all.push_back(normalsOf(brdf).density(wi));
+    }
+    return all;
+}
+
+bool differ(const std::vector<double>& a, const std::vector<double>& b) {
+    return !std::ranges::equal(
+        a, b, [](double x, double y) { return std::abs(x - y) <= 1e-9 * (1e-9 + std::abs(x)); });
+}
+
+/// Parameter::role of each number and colour that the setting states.
+TEST_P(FacetNormalsOf, ParametersChangeWhatTheirRolesSay) {
+    using enum Parameter::Role;
+    const Setting setting{GetParam()};
+    const brdfs::Model* model = brdfs::findModel(setting.model);
+    ASSERT_NE(model, nullptr);
+    for (const auto& [name, stated] : setting.values) {
+        const auto row = std::ranges::find(model->parameters, name, &Parameter::name);
+        ASSERT_NE(row, model->parameters.end()) << name;
+        if (row->kind == Parameter::Kind::choice) continue;
+        const double low = std::max(row->min, 0.0), most = std::min(row->max, low + 1);
+        const auto at = [&](double share) {
+            return setting.with(name, low + share * (most - low));
+        };
+        const auto a = at(0.3), b = at(0.5), c = at(0.7);
+        const bool turns = normalsOf(*a).turn != normalsOf(*c).turn;
+        const bool terms = differ(shapeOf(*a), shapeOf(*c));
+        const std::vector<double> first = weightsOf(*a), middle = weightsOf(*b);
+        const std::vector<double> last = weightsOf(*c);
+        EXPECT_EQ(turns, row->role == turn) << name;
+        EXPECT_EQ(terms, row->role != weight) << name;
+        EXPECT_EQ(differ(first, last), row->role == weight || row->role == both) << name;
+        if (row->role != weight) continue;
+        for (std::size_t t = 0; t < first.size(); ++t)
+            EXPECT_NEAR(middle[t], (first[t] + last[t]) / 2, 1e-12) << name << ", term " << t;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Models, FacetNormalsOf,
                          testing::Values("ggx:alpha=0.2,kd=0.3,F0=0.9/0.5/0.1,ks=0.8",
                                          "ggx:ax=0.1,ay=0.4,fresnel=conductor,ior=0.2/0.9/1.2,k=3",
@@ -75,7 +164,10 @@ INSTANTIATE_TEST_SUITE_P(Models, FacetNormalsOf,
                                          "ward:ax=0.2,ay=0.3,kd=0.1/0.2/0.3,ks=0.5",
                                          "gltf-pbr:baseColorFactor=0.9/0.4/0.2,metallicFactor=0.3,"
                                          "roughnessFactor=0.5,anisotropyStrength=0.4,"
-                                         "anisotropyRotation=1"));
+                                         "anisotropyRotation=1",
+                                         "gltf-pbr:baseColorFactor=0.9,metallicFactor=0.3,"
+                                         "roughnessFactor=0.6,ior=1.4,specularFactor=0.7,"
+                                         "specularColorFactor=0.8"));
 
 TEST(FacetNormals, ModelsOfTwoLobesHaveNone) {
     for (const char* spec : {"gltf-pbr:clearcoatFactor=0.5", "gltf-pbr:sheenColorFactor=0.5"}) {

@@ -279,22 +279,6 @@ class SameNumbers(program.InFolder):
         expected = self.json_of("matrix", "sh", "hsh", "--order", "3", "--from-order", "4")
         self.assertEqual(matrix.tolist(), expected["matrix"])
 
-    def test_exports_and_conversions_are_those_of_the_program(self):
-        self.run_program("project", "ggx:alpha=0.5", "--outgoing", "8", "-o", "c.json")
-        done = hshfit.export("c.json", "ours", targets=["bin", "glsl-es"])
-        self.run_program("export", "c.json", "-o", "theirs", "--target", "bin,glsl-es")
-        self.assertTrue(done["files"])
-        for file in done["files"]:
-            self.assertEqual(self.bytes_of(f"ours/{file['path']}"),
-                             self.bytes_of(f"theirs/{file['path']}"))
-        sidecar = f"ours/{done['sidecar']}"
-        hshfit.import_coefficients(sidecar, "back.json")
-        self.run_program("import", sidecar, "-o", "theirs_back.json")
-        self.assertEqual(self.bytes_of("back.json"), self.bytes_of("theirs_back.json"))
-        hshfit.open("phong:exponent=9").write("ours.bsdf", format="rgl")
-        self.run_program("convert", "phong:exponent=9", "theirs.bsdf")
-        self.assertEqual(self.bytes_of("ours.bsdf"), self.bytes_of("theirs.bsdf"))
-
     def test_pictures_are_those_of_the_program(self):
         hshfit.render(["lambert", "ggx:alpha=0.3"], "ours.png", size=24, light=[(30, 90, 2)])
         self.assertEqual(self.bytes_of("ours.png"),

@@ -25,10 +25,6 @@ Elevation<double> elevationOf(const Direction& d) {
     return {d.z, d.z > 0 ? oneMinusZ(d) : 1 - d.z};
 }
 
-double dot(const Direction& a, const Direction& b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
 Direction rotateAboutZ(const Direction& d, double angle) {
     const double c = std::cos(angle), s = std::sin(angle);
     return {c * d.x - s * d.y, s * d.x + c * d.y, d.z};

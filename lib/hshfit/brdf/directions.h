@@ -42,7 +42,9 @@ struct Elevation {
 Elevation<double> elevationOf(const Direction& d);
 
 /// The inner product; of unit vectors, the cosine of the angle between them.
-double dot(const Direction& a, const Direction& b);
+inline double dot(const Direction& a, const Direction& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 
 /// `d` turned about +z by `angle` radians.
 Direction rotateAboutZ(const Direction& d, double angle);

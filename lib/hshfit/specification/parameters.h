@@ -44,6 +44,15 @@ struct Parameter {
     /// Colours with a least value of 0: whether f is linear in it, each channel by itself, jointly
     /// with all free parameters for which this holds, given what is stated. None: it is not.
     bool (*linear)(const Parameters& stated) = nullptr;
+    /// The part of a lobe of microfacets, f = sum of weights times terms, that it changes
+    /// (FacetNormals).
+    enum class Role {
+        shape,   ///< the terms or the distribution of normals, and no weight
+        weight,  ///< the weights alone, which are affine in it while the others stay
+        both,    ///< terms and weights
+        turn,    ///< the axes of the distribution
+    };
+    Role role = Role::shape;
 };
 
 /// Checked parameter values, defaults filled in. A request for an undeclared name is our bug.
