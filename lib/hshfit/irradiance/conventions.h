@@ -23,8 +23,9 @@ struct Convention {
     std::string_view order;       ///< of l and m
     std::string_view source;      ///< the engine's code that was read
     std::string_view evidence;    ///< how the row was checked
-    /// Degrees about +z by which light is turned before the numbers are taken, so that they are
-    /// those of the engine's own import of the same panorama, and that import. No engine mirrors.
+    /// Degrees about +z by which light is turned before the numbers are taken. The numbers then
+    /// equal the ones that the engine itself makes from the same panorama by `import`. No engine
+    /// mirrors.
     double turn = 0;
     std::string_view import;
     Direction (*toEngine)(const Direction& world);

@@ -14,8 +14,8 @@ namespace hshfit::inline irradiance {
 /// Condon-Shortley phase.
 using NineRgb = std::array<Rgb, 9>;
 
-/// Coefficients of irradiance E(n) = integral of L(w) max(0, n . w) d omega from those of radiance:
-/// band l times pi, 2 pi / 3, pi / 4 (Ramamoorthi & Hanrahan 2001).
+/// Coefficients of irradiance E(n) = integral of L(w) max(0, n . w) d omega from the coefficients
+/// of radiance: band l times pi, 2 pi / 3, pi / 4 (Ramamoorthi & Hanrahan 2001).
 NineRgb irradianceOf(const NineRgb& radiance);
 
 /// The sum of the nine functions at a unit vector.

@@ -9,7 +9,7 @@
 namespace hshfit::inline light {
 
 /// A light from a file of light coefficients (light_file.h), in the axes that the file states: the
-/// world's, or those of the hemisphere about its normal. Throws InputError as readLight does.
+/// world's axes, or the hemisphere's about its normal. Throws InputError as readLight does.
 CoefficientLight readCoefficientLight(const std::string& path);
 CoefficientLight coefficientLight(LightCoefficients coefficients, const std::string& file);
 

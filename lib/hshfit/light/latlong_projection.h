@@ -14,11 +14,11 @@ namespace hshfit::inline light {
 /// row are kept for order n, and 48 n bytes a row where these are at most 512 MB and n is more than
 /// 32 and at most half the rows. Runs on all threads; results do not depend on their number.
 ///
-/// A ring is a step in theta and in azimuth. Its azimuth integrals are those at pixel centres, a
-/// fast Fourier transform, times sin(m d/2) / (m d/2). T_l^m sin(theta) is a trigonometric
+/// A ring is a step in theta and in azimuth. Its azimuth integrals are sums over pixel centres, by
+/// a fast Fourier transform, times sin(m d/2) / (m d/2). T_l^m sin(theta) is a trigonometric
 /// polynomial of degree l + 1, so that the Fourier coefficients of the steps in theta up to degree
-/// n, in closed form, have the same integrals as the steps; those are sums over n + 1 equispaced
-/// theta.
+/// n, in closed form, have the same integrals as the steps. The integrals are sums over n + 1
+/// equispaced theta.
 class LatlongProjection {
 public:
     LatlongProjection(int order, std::size_t width, std::size_t height);

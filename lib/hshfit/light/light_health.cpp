@@ -161,8 +161,8 @@ bool besideTheGrid(const Light& light) {
     return (shape && shape->width < narrowShape) || std::holds_alternative<DirectionalLight>(light);
 }
 
-/// Pixels, or their parts, with the shapes in front of them. Their edges cross pixels: what those
-/// count of a shape's flux is made up for by its exact flux.
+/// Pixels, or their parts, with the shapes in front of them. The edges of shapes cross pixels, so
+/// that pixels count the flux of a shape inexactly; its exact flux makes up for that.
 class Pixels {
 public:
     Pixels(Examination& examination, const PictureGeometry& geometry, const PictureLight* picture,

@@ -11,9 +11,9 @@ namespace hshfit::inline light {
 
 /// A light as a whole. Radiance by pixel: of the first picture at its full resolution, with what
 /// other lights add in the pixels' middles, or of a grid of 1024 x 512 where there is no picture.
-/// Pixels on the edge of a disc or panel count in 8 x 8 parts, and the flux of both is exact. Those
-/// narrower than 4 degrees, and directional lights, stand beside the grid, before the radiance in
-/// their middle.
+/// Pixels on the edge of a disc or panel count in 8 x 8 parts, and the flux of both is exact. Discs
+/// and panels narrower than 4 degrees, and directional lights, stand beside the grid, before the
+/// radiance in their middle.
 struct LightHealth {
     Rgb mean{};  ///< radiance over the sphere
     Rgb peak{};  ///< radiance with the largest sum of components; infinite for a direction

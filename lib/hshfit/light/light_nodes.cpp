@@ -77,7 +77,7 @@ struct AddLight {
         addPictureNodes(light, domain, order, level, nodes);
     }
 
-    /// The bands of the light and those asked for share the nodes.
+    /// The bands of the light and the bands asked for share the nodes.
     void operator()(const CoefficientLight& light) const {
         Cap part{.axis = {0, 0, 1}, .radius = hemisphere() ? pi / 2 : pi};
         if (light.coefficients->domain == LightCoefficients::Domain::hemisphere)

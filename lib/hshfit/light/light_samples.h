@@ -27,7 +27,7 @@ struct LightSamples {
     std::size_t count() const { return x.size(); }
     DirectionBatch directions() const { return {x.data(), y.data(), z.data(), x.size()}; }
     void add(const Direction& local, const Rgb& radiance, double solidAngle);
-    /// Adds those of samples in the world that are above the surface.
+    /// Adds the samples of `world`, whose directions are in the world, that are above the surface.
     void addAbove(const LightSamples& world, const Frame& frame);
 };
 

@@ -69,7 +69,7 @@ public:
                     {nodes.flux[0][k], nodes.flux[1][k], nodes.flux[2][k]}, 1);
     }
 
-    /// Captured energies, [k], and that of all terms last.
+    /// The energies that the best k terms capture, [k], and last the energy of all terms.
     std::vector<double> captured(std::size_t most) const {
         std::array<std::vector<double>, 3> each;
         tbb::parallel_for(std::size_t{0}, std::size_t{3}, [&](std::size_t c) {

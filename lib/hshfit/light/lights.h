@@ -118,7 +118,7 @@ struct PictureLight {
 };
 
 /// Light from one direction alone. Its radiance is infinite there and 0 elsewhere; `irradiance` is
-/// that of a surface across the beam.
+/// measured on a surface across the beam.
 struct DirectionalLight {
     Direction towards;
     Rgb irradiance{};

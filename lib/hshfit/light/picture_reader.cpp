@@ -54,7 +54,7 @@ bool isFile(std::string_view path) {
     return std::filesystem::is_regular_file(path, error);
 }
 
-/// The files of a path: itself, or those of the names of which most exist.
+/// The files of a path: the path itself, or six faces by the names of which most files exist.
 std::vector<std::string> filesOf(const std::string& path) {
     if (isFile(path) || facePlace(path).second == 0) return {path};
     std::vector<std::string> best;

@@ -63,7 +63,7 @@ using RowVisitor = std::function<void(std::size_t row, std::span<const float> rg
 /// JPEG, TIFF, BMP, PNM and PFM, told apart by their first bytes; colour, or grey for all three
 /// channels; at most 2^28 pixels. Six files are one picture of faces in a column: `path` with
 /// "{face}" or "%s" for the names of one of `faceNames()`. Row 0 is at the top; alpha is ignored.
-/// Primaries other than those of Rec. 709 are converted, EXPOSURE and COLORCORR divided out.
+/// Primaries other than Rec. 709 are converted, EXPOSURE and COLORCORR divided out.
 ///
 /// Throws InputError that starts with the path for a file that is absent, broken or of no known
 /// format, a size that fits no layout, or not the one asked for, and whole numbers without a curve.

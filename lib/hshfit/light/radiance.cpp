@@ -108,7 +108,8 @@ Radiance outgoingRadiance(const PairEvaluator& evaluator, std::size_t channels,
 BasisLight::BasisLight(const Basis& basis, Quantity quantity, const LightSamples& light)
     : order_(basis.order()) {
     const auto slots = static_cast<std::size_t>(basis.slots());
-    // Columns beyond the slots of one direction are those of the next: their sums are left out.
+    // Columns beyond the slots of one direction belong to the next direction: their sums are left
+    // out.
     const std::size_t columns = (slots + laneGroup - 1) / laneGroup * laneGroup;
     // Values of a batch stay in the cache.
     const std::size_t most =

@@ -24,7 +24,7 @@ Radiance outgoingRadiance(const PairEvaluator& evaluator, std::size_t channels,
 /// Lighting in one basis, which turns coefficients over wi into outgoing radiance without a sum
 /// over light samples. The same sum as `outgoingRadiance` in another order:
 ///     L(wo) = sum over l, m of c_{l,m}(wo) E_{l,m},   E = sum over k of flux[k] w_k B_{l,m}(wi_k)
-/// with w = cos(theta_k) for coefficients of f, 1 for those of f cos(theta_i).
+/// with w = cos(theta_k) for coefficients of f, 1 for coefficients of f cos(theta_i).
 class BasisLight {
 public:
     BasisLight(const Basis& basis, Quantity quantity, const LightSamples& light);

@@ -217,7 +217,7 @@ private:
         return sun;
     }
 
-    /// The pixels and those across their edges, on which the sun's rim may lie.
+    /// The pixels and their neighbours across edges, on which the sun's rim may lie.
     std::vector<Place> withNeighbours(const std::set<Place>& sun, const Pixels& window,
                                       double radius) const {
         std::set<Place> all = sun;

@@ -18,19 +18,19 @@ struct SunSplit {
     double surroundings = 0;        ///< the median about it
 };
 
-/// Finds the sun as follows. Luminance is that of Rec. 709, P its largest value.
+/// Finds the sun as follows. Luminance is by Rec. 709, and P is its largest value.
 /// 1. Pixels of at least P / 10 form connected parts; the sun is in the one with the largest flux.
 /// 2. B is the median, weighted with solid angle, from R to 2 R off the part's brightest pixel,
 ///    with R = 5 degrees or 3 pixels of average size, if that is more. There is no sun below
 ///    100 B.
-/// 3. The sun's pixels are those connected to it, across edges, above the geometric mean of both
-///    luminances (a thousandth of the peak where B is 0), and their neighbours. A part that goes
-///    beyond R is a lamp or a window and no sun.
-/// They are filled as faulty pixels are, by Laplace's equation from those around, but never above
-/// the picture. The differences, constant within each pixel, have a flux F_c by channel and a
-/// direction by the sum of all of them. The disc has that direction, its mean cosine about it,
-/// (1 + cos r) / 2, and F_c. So bands 0 are exact, bands 1 exact for the sum of the channels, and
-/// each higher one to second order in the angular size of the pixels.
+/// 3. The sun's pixels are connected to the brightest pixel across edges and are brighter than the
+///    geometric mean of its luminance and B (a thousandth of its luminance where B is 0). Their
+///    neighbours are the sun's too. A part that goes beyond R is a lamp or a window and no sun.
+/// The sun's pixels are filled as faulty pixels are, by Laplace's equation from the pixels around,
+/// but never above the picture. The differences, constant within each pixel, have a flux F_c by
+/// channel and a direction by the sum of all of them. The disc has this direction, the same mean
+/// cosine about it, (1 + cos r) / 2, and F_c. So bands 0 are exact, bands 1 are exact for the sum
+/// of the channels, and higher bands to second order in the angular size of the pixels.
 ///
 /// Throws InputError that starts with the picture's name where it has no sun, or one of more than
 /// 65536 pixels.

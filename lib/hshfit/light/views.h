@@ -50,7 +50,7 @@ struct Views {
 /// turned against the one before so that no azimuth is favoured; `shift` in [0, 1) turns all of
 /// them.
 Views viewsOf(const ViewRange& range, double degrees, double shift);
-/// Those at `indices`.
+/// The views at `indices`.
 Views subset(const Views& views, std::span<const std::size_t> indices);
 
 /// Outgoing radiance, [view][R, G, B], for one orientation.
@@ -62,7 +62,7 @@ double errorOf(const Budget& budget, const Views& views, std::span<const Radianc
                std::span<const Radiance> approximation);
 
 /// The same for each elevation by itself, in the order of `views.thetas`. For the metric log, e is
-/// that of all elevations.
+/// the same for all elevations, from the mean over all of them.
 std::vector<double> errorsByElevation(const Budget& budget, const Views& views,
                                       std::span<const Radiance> truth,
                                       std::span<const Radiance> approximation);

@@ -147,7 +147,7 @@ double irradianceOf(const Lines& lines, std::size_t field, std::string_view what
     return value;
 }
 
-/// Whether the present line is that of the moment's month, day and hour.
+/// Whether the present line is for the moment's month, day and hour.
 bool holds(const Lines& lines, const Moment& local) {
     return lines.whole(monthField, "month", 1, 12) == local.month &&
            lines.whole(dayField, "day", 1, 31) == local.day &&

@@ -25,7 +25,7 @@ struct HosekWilkieTerm {
 /// B, X Y Z or wavelengths makes a colour, whose components below 0 count as 0.
 ///
 /// The unit is 1000 cd/m^2, as the authors give it: X Y Z are W/m^2/sr, to be taken times 683 lm/W,
-/// and wavelengths W/m^2/sr/nm. They give none for RGB, which is taken as that of X Y Z.
+/// and wavelengths W/m^2/sr/nm. For RGB they give no unit: it is taken to be the same as for X Y Z.
 /// Wavelengths become X Y Z by `tristimulusOfRadiance`.
 ///
 /// Domain: turbidity 1 to 10, albedo 0 to 1 of the ground, sun.z >= 0. `file` names the tables:

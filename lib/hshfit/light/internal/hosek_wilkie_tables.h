@@ -29,15 +29,15 @@ constexpr std::array<double, 11> hosekWilkieWavelengths{320, 360, 400, 440, 480,
 /// Reads the C header that the authors publish with their sample code (version 1.4a, 2013), as
 /// text: ArHosekSkyModelData_RGB.h with the arrays datasetRGB1 to 3 and datasetRGBRad1 to 3,
 /// ..._CIEXYZ.h with datasetXYZ1 to 3 and datasetXYZRad1 to 3, or ..._Spectral.h with dataset320 to
-/// dataset720 and datasetRad320 to datasetRad720. Other arrays, such as those of the sun's disc,
-/// are passed over.
+/// dataset720 and datasetRad320 to datasetRad720. Other arrays, such as the ones for the sun's
+/// disc, are passed over.
 ///
-/// Throws InputError that starts with `name` for a text without any of these arrays, with some of
-/// a kind but not all, with those of two kinds, with one twice, and with one that breaks off, has
+/// Throws InputError that starts with `name` for a text without any of these arrays, with some of a
+/// kind but not all, with arrays of two kinds, with one twice, and with one that breaks off, has
 /// another count, or something in it that is no finite number.
 HosekWilkieTables hosekWilkieTablesIn(std::string_view text, const std::string& name);
 
-/// Reads a file of at most 16 MiB so.
+/// The same from a file of at most 16 MiB.
 HosekWilkieTables readHosekWilkieTables(const std::string& path);
 
 }  // namespace hshfit::inline light

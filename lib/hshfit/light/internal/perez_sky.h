@@ -6,8 +6,8 @@ namespace hshfit::inline light {
 
 /// A sky by two measured numbers (Perez, Seals & Michalsky 1993, "All-weather model for sky
 /// luminance distribution", Solar Energy 50(3)). With Z the angle of the sun from the zenith in
-/// radians, I the irradiance of the sun across its beam, D that of a horizontal surface by the sky
-/// and E0 the irradiance of the sun outside of the atmosphere, all in one unit:
+/// radians, I the irradiance of the sun across its beam, D the irradiance of a horizontal surface
+/// by the sky and E0 the irradiance of the sun outside of the atmosphere, all in one unit:
 ///     clearness  = ((D + I) / D + 1.041 Z^3) / (1 + 1.041 Z^3)
 ///     brightness = m D / E0,  m = 1 / (cos Z + 0.15 (93.885 - Z in degrees)^-1.253)
 struct PerezWeather {

@@ -12,14 +12,14 @@ namespace hshfit::inline light {
 using FilledPixels = std::vector<FilledPixel>;
 
 /// Every pixel of the used area with a component that is below 0, infinite or not a number: in its
-/// place the solution of Laplace's equation on the pixels, each the mean of those across its four
-/// edges, over the edges of the picture and of a cube's faces too. A smooth gradient goes on
+/// place the solution of Laplace's equation on the pixels, each the mean of the pixels across its
+/// four edges, over the edges of the picture and of a cube's faces too. A smooth gradient goes on
 /// through them. Throws InputError for more than 65536 pixels, or where no valid pixel is next to
 /// them.
 FilledPixels fillPixels(const std::string& path, const PictureOptions& options);
 
-/// Fills pixels, sorted by row and column, in the same way from those around them; `rows` visits
-/// all rows of the picture. Throws InputError with `message` where none of those around has a
+/// Fills pixels, sorted by row and column, in the same way from the pixels around them; `rows`
+/// visits all rows of the picture. Throws InputError with `message` where no pixel around has a
 /// value.
 void fillFromAround(FilledPixels& pixels, const PictureGeometry& geometry,
                     const std::function<void(const RowVisitor&)>& rows, const std::string& message);

@@ -220,9 +220,9 @@ private:
     std::size_t block_, nodes_;
 };
 
-/// Pictures of other layouts: Gauss nodes of each pixel, weighted with the solid angle there, which
-/// is not the same all over a pixel, and scaled so that they add up to that of the pixel.
-/// Functions that turn within a pixel take more of them.
+/// For pictures of other layouts: Gauss nodes in each pixel. They are weighted with the density of
+/// solid angle, which varies over a pixel, and scaled so that the weights add up to the pixel's
+/// solid angle. Functions that turn within a pixel take more nodes.
 void addPixelNodes(const PictureLight& light, const LightDomain& domain, int order, int level,
                    LightNodes& nodes) {
     const PictureGeometry geometry = geometryOf(light);

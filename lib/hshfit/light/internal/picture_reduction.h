@@ -8,9 +8,9 @@
 namespace hshfit::inline light {
 
 /// Takes the rows of a picture in their order and keeps them, or box-filtered ones where there are
-/// more pixels than `most`: a kept pixel is the mean of those that it covers, by their solid angles
-/// and the parts of them that it covers. Faces of cubes do not mix. Memory: the kept pixels and two
-/// of their rows.
+/// more pixels than `most`: a kept pixel is the mean of the pixels that it covers, by their solid
+/// angles and the parts of them that it covers. Faces of cubes do not mix. Memory: the kept pixels
+/// and two of their rows.
 class PictureReduction {
 public:
     PictureReduction(const PictureGeometry& file, std::size_t most);

@@ -123,7 +123,9 @@ std::string orderThatMeets(const Seams& seams) {
     return text + "; expected: right left top bottom front back";
 }
 
-/// The back of an upright cross is its lowest face, that of a lying one the last to the right.
+/// A remark that the faces of a cross meet with the back turned by 180 degrees; empty if they do
+/// not. The back of an upright cross is its lowest face, the back of a lying cross its rightmost
+/// face.
 std::string backThatMeets(const Seams& seams) {
     const PictureGeometry& g = seams.geometry();
     const std::size_t n = g.faceSize();

@@ -209,8 +209,9 @@ void columnSums(const FourierPlan& plan, bool sine, const double* in, std::size_
         size = n;
     }
     for (std::size_t i = 0; i < group; i += lanes) {
-        // Even rows, then odd rows from the last: the transform of n values has the cosines of
-        // half steps (Makhoul 1980); sines are those of values of alternating signs, from the end.
+        // Even rows, then odd rows from the last: the transform of n values in this order has their
+        // cosine sums at half steps (Makhoul 1980). Sine sum j is cosine sum n - j of the values
+        // with alternating signs.
         for (std::size_t r = 0; r < n; ++r) {
             const V value = hn::LoadU(d, in + r * stride + i);
             const std::size_t to = r % 2 == 0 ? r / 2 : n - 1 - r / 2;

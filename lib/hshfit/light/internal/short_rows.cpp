@@ -40,9 +40,9 @@ HWY_INLINE void fetch(const float* at) {
     __builtin_prefetch(at, 0, 2);
 }
 
-/// Values `part` apart, those of one transform in each lane; adds their squares, and asks for as
-/// many values from `ahead`. Not inlined: the compiler would keep a pointer for each value, in
-/// memory.
+/// Transforms values `part` apart, with one transform in each lane. Adds the squares of the values
+/// to `squares`, and prefetches a quarter as many values from `ahead`. Not inlined: the compiler
+/// would keep a pointer for each value, in memory.
 template <std::size_t last>
 HWY_NOINLINE void transformColumns(const float* from, std::size_t part, const float* ahead,
                                    double* terms, double* squares) {
@@ -70,7 +70,7 @@ HWY_NOINLINE void transformRest(const float* from, std::size_t part, std::size_t
 constexpr std::size_t together = 3;
 constexpr std::size_t transformSize = (points + 1) * lanes;  // the last are zeros
 
-/// Where the sums of each m find their terms, and the sign of the sines.
+/// The places at which the sums of each m find their terms, and the sign of the sines.
 struct TermPlaces {
     std::size_t re[ShortPlan::mostOrder], im[ShortPlan::mostOrder];
     double sign[ShortPlan::mostOrder];

@@ -17,8 +17,8 @@ struct PlacedSun {
     double distance = 1;  ///< of the Earth from the sun, astronomical units; 1 without weather
 };
 
-/// Keys of a direction of at least the elevation `lowest`, or of a place and time for that of the
-/// sun; and the key of a weather file in the stead of the place.
+/// Keys that state where the sun is: its direction, at the elevation `lowest` or higher, or a place
+/// and a time. `weatherParameter` is the key of a weather file, which can stand for the place.
 std::vector<Parameter> sunPlaceParameters(double lowest);
 Parameter weatherParameter(std::string_view help);
 

@@ -35,7 +35,7 @@ struct Weather {
 /// negative or no numbers.
 Weather weatherIn(std::string_view text, const std::string& name, const Moment& local);
 
-/// The same of a file of at most 64 MiB.
+/// The same for a file of at most 64 MiB.
 Weather readWeather(const std::string& path, const Moment& local);
 
 }  // namespace hshfit::inline light
