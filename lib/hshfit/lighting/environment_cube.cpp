@@ -81,7 +81,7 @@ struct PyramidKernel {
 /// slowly, so that a cell is one node at the middle of its flux if it is small beside its distance.
 class LightPyramid {
 public:
-    /// `width`: cells along a face in the finest level. Nodes that are many more than those cells
+    /// `width`: cells along a face in the finest level. Nodes that are many more than these cells
     /// are not kept: cells are an eighth of a kernel's width, so that what is lost is of the order
     /// of a hundredth of its curvature.
     LightPyramid(const LightNodes& nodes, std::size_t width) {

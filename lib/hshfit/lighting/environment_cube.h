@@ -32,7 +32,7 @@ Direction cubeDirection(std::size_t face, double a, double b);
 /// Nodes of the lights resolve functions of `order` bands. Runs on all threads.
 EnvironmentCube::Level convolve(std::span<const Light> lights, std::size_t face, int order,
                                 const LobeKernel::Scaled& kernel);
-/// The same of a level of another cube, each of whose texels is a node. A tenth of the kernel's
+/// The same for a level of another cube, each of whose texels is a node. A tenth of the kernel's
 /// integral, at most, is beyond the chord `core`.
 EnvironmentCube::Level convolve(const EnvironmentCube::Level& light, std::size_t face,
                                 const LobeKernel::Scaled& kernel, double core);

@@ -14,9 +14,9 @@ namespace hshfit::lighting {
 ///     F_{l,m}(wo) = integral over the hemisphere of f cos(theta_i) Y_{l,m}(wi)
 /// in the frame turned about the normal in which wo is at azimuth 0. Light of `order` bands is then
 /// reflected exactly, but for the interpolation: the radiance is the sum of F_{l,m} L_{l,m} over
-/// the coefficients of light in the frame of n and wo. Texels have R, G, B: texel l (l + 1) / 2 + m
-/// that of m >= 0 where lobes are their own mirror image (`inPlane`: F is 0 for m < 0), else texel
-/// l (l + 1) + m.
+/// the coefficients of light in the frame of n and wo. Texels have R, G, B. Where lobes are their
+/// own mirror image (`inPlane`: F is 0 for m < 0), F_{l,m} is texel l (l + 1) / 2 + m, for m >= 0;
+/// otherwise texel l (l + 1) + m.
 struct HarmonicTable {
     int order = 0;
     bool inPlane = true;

@@ -77,7 +77,7 @@ void setDeclarations(Language language, const LightingShader& shader, data& page
              coefficients ? array("light", shader.order * shader.order) : array("irradiance", 9));
 }
 
-/// Terms of m >= 0, and those of m < 0 of lobes that are not their own mirror images.
+/// Terms with m >= 0, and with m < 0 where lobes are not their own mirror images.
 void setTerms(const LightingShader& shader, data& page) {
     data terms{data::type::list}, sines{data::type::list};
     for (int l = 0; l < shader.order; ++l) {

@@ -24,8 +24,8 @@ struct LightingShader {
     const Prefilter* engine = nullptr;  ///< of prefiltered
     std::size_t lobes = 0;              ///< of prefiltered
     bool inPlane = true;                ///< lobes are their own mirror images
-    /// Of prefiltered with one azimuth: the table has a row for each material, which has its rows
-    /// by elevation one after another.
+    /// For prefiltered with one azimuth: the table has a row of texels for each material, in which
+    /// the material's rows by elevation follow one another.
     bool materials = false;
     ElevationRows rows = {};
     AzimuthNodes azimuths = {};

@@ -14,7 +14,7 @@ constexpr double narrowest = 1e-5;      // in t
 constexpr std::size_t entries = 16384;  // of a tabulated kernel
 constexpr double leastScale = 1e-3, mostScale = 30;
 
-/// Where f is looked up: along the meridian of +x, or to both sides of an axis.
+/// The directions at which f is looked up: along the meridian of +x, or to both sides of an axis.
 struct ProfileDirections {
     std::vector<double> x, y, z;
 

@@ -22,7 +22,7 @@ struct Prefilter {
     std::size_t levels = 0;  ///< 0: the mirror image; the last: roughness 1
     /// The level of a roughness in [0, 1] among `levels`, from 0 to levels - 1.
     double (*level)(double roughness, std::size_t levels) = nullptr;
-    /// The same for shaders, of r, with {0} for the last level.
+    /// The level as a shader's expression in the roughness r, with {0} for the last level.
     const char* formula = nullptr;
 
     double levelOf(double roughness) const { return level(roughness, levels); }
@@ -30,7 +30,7 @@ struct Prefilter {
     double roughnessOf(double level) const;
 };
 
-/// One row for each engine. Formulas are those of the engines' sources
+/// One row for each engine, with the formula from the engine's source
 /// (docs/explanation/prefiltered.md).
 std::span<const Prefilter> prefilters();
 /// Throws UsageError with the known names.
@@ -38,9 +38,9 @@ const Prefilter& prefilterNamed(std::string_view name);
 
 /// Zonal coefficients of P_r, bands 0 to bands - 1: p_l = integral of P_r P_l(cos gamma), p_0 = 1.
 std::vector<double> kernelBands(double roughness, int bands);
-/// The same of each level.
+/// The same for each level.
 std::vector<std::vector<double>> levelBands(const Prefilter& prefilter, int bands);
-/// The same of a lookup at a place among these levels, which mixes the two beside it.
+/// The same for a lookup at a place among these levels, which mixes the two levels beside it.
 std::vector<double> lookUpBands(std::span<const std::vector<double>> levels, double place);
 
 /// The engine's cube of the light. The last level has faces of `lastFace` texels, 8 in engines, and

@@ -57,7 +57,7 @@ struct Chain {
     double left = 0;  ///< sums of LobeSearch::leftBy: of rows, and of their neighbours' mean
 };
 
-/// Lobes halfway between those of two rows, as a table interpolates them.
+/// The lobes halfway between two rows, as a table interpolates them.
 LobeSolution between(const LobeSolution& a, const LobeSolution& b) {
     LobeSolution middle = a;
     const auto mix = [](Rgb& to, const Rgb& other) {
@@ -186,8 +186,8 @@ PrefilteredTable fitPrefiltered(const Brdf& brdf, const Prefilter& engine, std::
     const auto basis = bases::make("sh", PrefilteredTable::bands);
     const std::vector<LobeTarget> targets = targetsOf(brdf, *basis, result.table);
     const LobeSearch search(PrefilteredTable::bands, engine, lobes, inPlane);
-    // A row of each azimuth from that of the azimuth before, so that lobes keep their places, and
-    // from it the others.
+    // The search for the middle row of an azimuth starts from the middle row of the azimuth before,
+    // so that lobes keep their places. The other rows of the azimuth follow from it.
     const std::size_t around = result.table.azimuths.count, middle = rowAt(rows, startAngles[1]);
     const double theta = std::acos(rows.cosine(middle));
     const auto targetsAt = [&](std::size_t k) {

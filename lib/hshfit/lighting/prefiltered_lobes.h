@@ -38,8 +38,9 @@ struct PrefilteredTable {
 
 /// The relative error of the radiance under lights of every turn, the mean over theta_o of
 ///     sqrt(sum over l of E_l |D_l|^2 / (2 l + 1) / the same with f in place of D),
-/// E_l the squares of the lights' coefficients of band l, D_l those of f cos(theta_i) less the
-/// lobes, over channels and 64 bands. Between the rows and within texels of cubes nothing is seen.
+/// where E_l is the sum of squares of the lights' coefficients in band l, and |D_l|^2 the sum of
+/// squares of the coefficients of f cos(theta_i) less the lobes, over channels and 64 bands. Errors
+/// between rows and within texels of cubes are not seen.
 double turnedError(const PrefilteredTable& table, std::span<const Light> lights);
 
 /// With 1 to `mostLobes` lobes. Throws UsageError for another number and for channels that are not

@@ -27,8 +27,8 @@ struct CosineTable {
 /// leaves the cosine as it is.
 struct TransformedCosine {
     double a = 1, b = 0, c = 0, d = 1, e = 0, f = 0, g = 0;
-    /// The part of the lobe above the horizon, (1 + a / sqrt(a^2 + (e g - c)^2 + (a g)^2)) / 2:
-    /// that of a cosine's lune. The determinant is positive.
+    /// The share of the lobe that is above the horizon, (1 + a / sqrt(a^2 + (e g - c)^2 + (a g)^2))
+    /// / 2: the cosine's integral over a lune. The determinant is positive.
     double share() const;
 };
 

@@ -52,10 +52,10 @@ public:
     /// Radians: 16 units of single precision's last place, and above its rounding.
     static constexpr double secondTurn = 16 * 0x1p-24;
 
-    /// The first meetings of many rays, hits[k] that of rays[k], with an infinite distance where
-    /// the ray leaves. Packets of 8 rays are traced together: neighbours in the list should start
-    /// near each other and go about the same way. As `firstHitOnce`, without the second ray. A hit
-    /// does not depend on the calling thread.
+    /// The first meetings of many rays: hits[k] belongs to rays[k], and its distance is infinite
+    /// where the ray leaves. Packets of 8 rays are traced together: neighbours in the list should
+    /// start near each other and go about the same way. As `firstHitOnce`, without the second ray.
+    /// A hit does not depend on the calling thread.
     void firstHits(std::span<const Ray> rays, std::span<RayHit> hits) const;
 
 private:

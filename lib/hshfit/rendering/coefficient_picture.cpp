@@ -141,8 +141,9 @@ double sumOfSquares(const Rgb& value) {
     return value[0] * value[0] + value[1] * value[1] + value[2] * value[2];
 }
 
-/// Light of pictures in the basis, by normal: a table where it takes less work than the points
-/// themselves and where, in the middle of a cell, the radiance interpolated is that of the point.
+/// Light of pictures in the basis, by normal. A table is used where it takes less work than the
+/// points themselves, and in cells in whose middle the interpolated radiance agrees with the
+/// radiance computed there.
 class LightByNormal {
 public:
     LightByNormal(const CoefficientShader& shader, const LightAbove& light, std::size_t materials,

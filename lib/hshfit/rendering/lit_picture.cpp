@@ -11,7 +11,7 @@
 namespace hshfit::inline rendering {
 namespace {
 
-/// The errors of pixels from those of their points.
+/// The errors of pixels from the errors of their points.
 void addPixelErrors(const SurfacePoints& points, const std::vector<PointRadiance>& facts,
                     LitPicture& result) {
     double mean = 0;

@@ -25,7 +25,7 @@ struct View {
 struct SurfacePoints {
     int size = 0;                    ///< pixels along an edge
     std::vector<float> coverage;     ///< [row][column], the share of samples on the surface
-    std::vector<std::size_t> first;  ///< [pixel]: its points are those up to first[pixel + 1]
+    std::vector<std::size_t> first;  ///< [pixel]: its points go up to first[pixel + 1]
     std::vector<Direction> normals;  ///< in the world, of each point
     std::vector<Direction> viewers;  ///< the same of the viewer; none where all are view.towards
 

@@ -21,7 +21,7 @@ constexpr double gridStep = 3;           // degrees between axes in the plane of
 constexpr double askewStep = 5;          // between axes anywhere
 constexpr double windowRoughness = 0.1;  // from one row to the next
 constexpr double windowAngle = 12;       // degrees, the same
-constexpr double mostLean = 3;           // of an axis from the normal, over that of wo
+constexpr double mostLean = 3;           // angle of an axis from the normal, over theta_o
 constexpr double gain = 1e-4;            // of what is left, below which a round is the last
 constexpr int mostRounds = 20;
 

@@ -31,7 +31,7 @@ public:
     std::vector<double> along(const Direction& axis) const;
     /// The sum of squares with the weights of bands, over channels.
     double size() const { return size_; }
-    /// The coefficients without those of lobes: [channel][slot].
+    /// The coefficients less the coefficients of lobes: [channel][slot].
     std::array<std::vector<double>, 3> without(const std::vector<Direction>& axes,
                                                const std::vector<std::vector<double>>& bands,
                                                const std::vector<Rgb>& scales) const;

@@ -13,7 +13,8 @@ namespace hshfit::inline rendering {
 /// Values that change smoothly with a surface's normal, at the vertices of a grid of normals, and
 /// cubic interpolation in between. Six faces of a cube, in angles of equal steps, carry the grid;
 /// vertices are kept about the normals that occur. Values belong to the axes of a face, which turn
-/// smoothly over it: frameAt on four of them, and on those of +z and -z with +x in the place of +z.
+/// smoothly over it: frameAt on four faces, and on the faces of +z and -z frameAt with +x in the
+/// place of +z.
 class NormalTable {
 public:
     /// `perEdge` cells along an edge of the cube.

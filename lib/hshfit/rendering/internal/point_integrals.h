@@ -17,8 +17,8 @@ namespace hshfit::inline rendering {
 ///
 /// Where lines of sight are parallel, radiance depends on the normal alone. Points share integrals
 /// at the vertices of a grid of normals then, with cubic interpolation in between: grids of half
-/// the step follow each other for the points of those cells in whose middle, or in a middle beside
-/// it, interpolation is off by more than an eighth of the tolerance. The last points, for which the
+/// the step follow each other for the points of cells in whose middle, or in a middle beside it,
+/// interpolation is off by more than an eighth of the tolerance. The last points, for which the
 /// next grid would take more than a quarter of their own integrals, are integrated by themselves.
 class PointIntegrals {
 public:
