@@ -218,8 +218,8 @@ std::vector<ProductTerm> productTerms(const Basis& basis, const ProductSymmetry&
 }
 
 std::size_t productTermCount(const Basis& basis, const ProductSymmetry& symmetry) {
-    // Functions that may be paired with each other: those of one m, or, for an anisotropic and
-    // bilateral BRDF, of one parity of m and one of cosine and sine.
+    // Isotropic: functions of the same m may be paired. Anisotropic and bilateral: two cosines or
+    // two sines with the same parity of m. Otherwise all functions.
     std::map<int, std::size_t> classes;
     for (int l = 0; l < basis.order(); ++l) {
         for (int m = symmetry.isotropic ? 0 : -l; m <= l; ++m) {

@@ -54,9 +54,9 @@ std::vector<double> matrixValues(const Representation& matrix);
 /// (cos-weighted on both sides for a basis of Inner::projectedSolidAngle). Over wi by `project`;
 /// over wo by Gauss-Legendre nodes in sqrt(cos theta_o) times equispaced azimuths, refined until
 /// the coefficients agree to the tolerance (default: the larger of 1e-4 and the BRDF's own).
-/// `reciprocal` asks for the symmetric half only: that is the projection of the mean of q(wi, wo)
-/// and q(wo, wi); quantity brdf only. Head's energy is that of q over both hemispheres, head's
-/// `reciprocal` says whether the terms are the symmetric ones.
+/// `reciprocal` asks for the symmetric half only, which is the projection of the mean of q(wi, wo)
+/// and q(wo, wi); quantity brdf only. The head's energy is the energy of q over both hemispheres,
+/// and its `reciprocal` says whether the terms are the symmetric ones.
 ///
 /// Throws UsageError for a basis that is not orthonormal, or f cos(theta_i) with `reciprocal`;
 /// NumericError where the coefficients do not exist or do not converge.

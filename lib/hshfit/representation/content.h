@@ -39,7 +39,7 @@ struct MatrixBlock {
     std::string name;  ///< TermBlock::name
     std::variant<WholeBlock, ProductBlock, SymmetricBlock> part;
 };
-/// Kind basis: c_t by blocks; those that are left out are 0.
+/// Kind basis: c_t by blocks; blocks that are left out are 0.
 struct MatrixFactors {
     std::vector<MatrixBlock> blocks;
 };

@@ -8,8 +8,8 @@
 
 namespace hshfit::inline representation {
 
-/// Terms of both directions that form one matrix: rows the functions of wo, columns those of wi.
-/// Terms in different blocks share no pair of functions:
+/// Terms of both directions that form one matrix: rows are functions of wo, columns functions of
+/// wi. Terms in different blocks share no pair of functions:
 ///     isotropic             one for each m, and one for each m of sine terms
 ///     bilateral, otherwise  cosines and sines, even and odd m
 ///     otherwise             one

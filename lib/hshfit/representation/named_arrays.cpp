@@ -89,7 +89,7 @@ private:
     std::vector<Named<StoredArray>> arrays_;
 };
 
-/// The block that the first array belongs to, if its name is that of a part of one.
+/// The block that an array of this name belongs to; none if it names no part of a block.
 std::optional<std::string> blockOf(const std::string& name) {
     for (const std::string_view part : {"block ", "left ", "core ", "right "}) {
         if (name.starts_with(part)) return name.substr(part.size());

@@ -26,7 +26,7 @@ std::size_t countNumbers(std::string_view spec) {
     return count;
 }
 
-/// Numbers besides those of the arrays.
+/// The count of numbers that are stored outside of the arrays.
 std::size_t looseNumbers(const Representation& representation) {
     const auto* halfway = representation.as<HalfwayArray>();
     std::size_t own = halfway ? 3 * halfway->ceilings.size() + 2 : 0;

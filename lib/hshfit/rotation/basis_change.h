@@ -9,7 +9,7 @@
 
 namespace hshfit::inline rotation {
 
-/// Coefficients in one basis from those in another (Gautron et al. 2004, Eq. 18):
+/// Coefficients in one basis from coefficients in another (Gautron et al. 2004, Eq. 18):
 ///     C_(i,j) = integral over the hemisphere of TO_i FROM_j w d omega,
 /// w = 1 or cos(theta), the inner product of TO unless `weight` states another: the projection of
 /// sum c_j FROM_j, a function on the hemisphere that is 0 below the horizon, onto TO. A basis TO

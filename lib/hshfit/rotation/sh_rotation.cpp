@@ -44,7 +44,8 @@ kernels::ShortTable shortTable(const kernels::QuarterTables& quarters) {
     });
 }
 
-/// Rotations of functions with the sign (-1)^m are those about axes turned by pi about z.
+/// Rotations of functions with the sign (-1)^m equal rotations without it about axes turned by pi
+/// about z.
 std::vector<Rotation> turnedAxes(std::span<const Rotation> rotations) {
     std::vector<Rotation> result;
     for (const Rotation& r : rotations) {
@@ -61,7 +62,7 @@ struct Multiples {
 
     Multiples(int order, double c, double s) : cosine{1}, sine{0} {
         for (int m = 1; m < order; ++m) {
-            // From the halves: errors grow like m, as does that of m times the angle.
+            // From the halves: errors grow like m, as the error of m times the angle does.
             const auto a = static_cast<std::size_t>(m / 2), b = static_cast<std::size_t>(m) - a;
             const bool one = m == 1;
             cosine.push_back(one ? c : cosine[a] * cosine[b] - sine[a] * sine[b]);

@@ -51,7 +51,7 @@ private:
     bool even_, sure_;
     int mostRounds_;
     HemisphereScan coarse_, fine_;
-    std::unique_ptr<HemisphereGram> gram_;  ///< null: the norm is that of the coefficients
+    std::unique_ptr<HemisphereGram> gram_;  ///< null: the norm of the coefficients counts
 };
 
 /// For a search for non-negative sums that its last round did not end. `least`: of the sum, and of

@@ -24,7 +24,7 @@ struct FactorOptions {
 ///           norm 1 with the solid angles as weights, `right` the singular values. Directions
 ///           without a solid angle get the left part that is nearest to them.
 /// basis     The same for each block of terms (factoring_blocks.h): ProductBlock, with functions of
-///           wo as rows and those of wi as columns; reciprocal: SymmetricBlock, `right` from the
+///           wo as rows and of wi as columns; reciprocal: SymmetricBlock, `right` from the
 ///           decomposition of all channels, which is nearest for one channel and within sqrt 2 of
 ///           it for more. Blocks that would not get smaller, and antisymmetric ones, stay whole.
 ///           In the norm of the coefficients (for sh: over the sphere).

@@ -18,9 +18,9 @@ struct HalfwayLayout;
 
 /// The halfway form in double precision, without `added`: a smooth part and a lobe, each positive,
 ///     f = min(exp(min(A, a)) + L exp(min(B, b)), t),
-/// where A and B are sums of coefficients times the smooth terms and those of the lobe
-/// (halfway_terms.h), L is the lobe of halfway_axes.h, and a, b, t are the ceilings of the channel.
-/// Immutable; safe to use from many threads.
+/// where A and B are sums of coefficients times terms, the smooth terms for A and the terms of the
+/// lobe for B (halfway_terms.h), L is the lobe of halfway_axes.h, and a, b, t are the ceilings of
+/// the channel. Immutable; safe to use from many threads.
 class HalfwayExpansion {
 public:
     /// Throws InputError if the arrays, the orders, the lobe and the channels do not agree.
@@ -60,10 +60,10 @@ std::unique_ptr<PairEvaluator> halfwayPairEvaluator(const Representation& repres
 /// f < 0 counts as 0. The ceilings are the greatest exponents, and the greatest f, over the pairs.
 /// `head.error` and the last step are the error over pairs that took no part, as halfwayError has
 /// it. Results do not depend on threads. Terms keep the symmetries of `brdf.laws()`; `reciprocal`
-/// asks for those only that are symmetric in wi and wo, and for an isotropic BRDF mirror symmetric.
-/// `options` are `progress` (steps done and in all) and `maxEvaluations` (of f by pairs); the
-/// others are not used. Throws NumericError where f is not finite, UsageError for more than
-/// mostHalfwayTerms a channel.
+/// asks for the terms only that are symmetric in wi and wo, and for an isotropic BRDF mirror
+/// symmetric. `options` are `progress` (steps done and in all) and `maxEvaluations` (of f by
+/// pairs); the others are not used. Throws NumericError where f is not finite, UsageError for more
+/// than mostHalfwayTerms a channel.
 Representation projectHalfway(const Brdf& brdf, const HalfwayOrders& orders,
                               const ProjectionOptions& options = {}, bool reciprocal = false);
 
@@ -74,7 +74,7 @@ HalfwayOrders chooseHalfwayOrders(const Brdf& brdf, std::size_t bytes, Precision
                                   const ProjectionOptions& options = {}, bool reciprocal = false);
 
 /// Mean of |ln(1 + f c) - ln(1 + g c)|, c = cos(theta_i), over pairs uniform on both hemispheres
-/// and over channels; the pairs are not among those that projectHalfway fits.
+/// and over channels; projectHalfway does not fit any of these pairs.
 double halfwayError(const Brdf& brdf, const Representation& representation);
 
 }  // namespace hshfit::inline representation::inline halfway

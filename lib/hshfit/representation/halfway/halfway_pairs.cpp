@@ -8,8 +8,8 @@
 namespace hshfit::inline representation::inline halfway {
 namespace {
 
-/// The kernel's Legendre polynomials are those of value 1 at 1; the factors that make them
-/// orthonormal go into the coefficients.
+/// The kernel's Legendre polynomials have the value 1 at 1; the factors that make them orthonormal
+/// go into the coefficients.
 double norm(const HalfwayTerm& t) {
     const double harmonic = t.q > 0 ? 2 : 1, third = t.lobe ? 1 : 2.0 * t.k + 1;
     return std::sqrt((2.0 * t.i + 1) * (2.0 * t.j + 1) * third * harmonic);

@@ -22,7 +22,8 @@ namespace {
 
 constexpr std::size_t fewestPairs = 1 << 14;
 constexpr std::size_t heldOutPairs = 1 << 15, heldOutOfAll = 1 << 13;
-/// Steps from constants to what the pairs alone say, and those that the albedos add.
+/// The number of steps from constants to the fit of the pairs alone, and of further steps with the
+/// albedos.
 constexpr int roughSteps = 8, fineSteps = 30;
 
 /// Whether f of an isotropic BRDF changes when both directions are mirrored at a plane by more than
@@ -94,7 +95,7 @@ HalfwaySamples thinned(const HalfwaySamples& samples, std::size_t count, bool gr
 
 using Progress = std::function<void(std::size_t, std::size_t)>;
 
-/// Steps in all, and those that are done.
+/// The steps in all, and the steps that are done.
 class Steps {
 public:
     Steps(const Progress& call, std::size_t count) : call_(call), count_(count) {}

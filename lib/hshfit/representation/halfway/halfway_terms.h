@@ -63,7 +63,7 @@ public:
     const std::vector<HalfwayTerm>& list() const { return terms_; }
     /// The smooth exponent's runs first.
     const std::vector<HalfwayRun>& runs() const { return runs_; }
-    /// Where the terms of the runs, one after another, are in the list.
+    /// The places in the list of the terms of the runs, one after another.
     const std::vector<std::size_t>& position() const { return position_; }
     int harmonics() const { return harmonics_; }  ///< the largest q
 
@@ -80,7 +80,7 @@ private:
     int harmonics_ = 0;
 };
 
-/// The orders asked for; where they are 0, those with the least picture error that keep three
+/// The orders asked for; where they are 0, the orders with the least picture error that keep three
 /// channels in half precision within a kilobyte (docs/explanation/halfway.md): an isotropic
 /// reciprocal BRDF takes 9,13,5, since its ridge wants functions along v, other isotropic ones
 /// 9,8,6, and an anisotropic one 8,8,6.

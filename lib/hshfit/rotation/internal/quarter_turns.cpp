@@ -102,7 +102,7 @@ void apply(int l, const double* rows, const double* in, double* out) {
     double *cosOut = out, *sinOut = out + size;
     std::fill_n(out, 2 * size, 0.0);
     // Parities in x, y and z decide which functions meet. Signs: + between cosines, - between
-    // sines, and between a sine and a cosine that of an odd larger m.
+    // sines. Between a sine and a cosine the sign is + if the larger m is odd, - if it is even.
     for (std::size_t m = 0; m <= static_cast<std::size_t>(l); ++m) {
         const double* row = rows + rowOffset(m);
         const bool evenBand = l % 2 == 0, evenRow = m % 2 == 0;

@@ -35,7 +35,7 @@ constexpr std::size_t rowPadding = 8;
 constexpr std::size_t padded(std::size_t count) {
     return (count + rowPadding - 1) / rowPadding * rowPadding;
 }
-/// Where row m, of m + 1 values, begins.
+/// The place at which row m, of m + 1 values, begins.
 constexpr std::size_t rowOffset(std::size_t m) {
     const std::size_t q = m / rowPadding, r = m % rowPadding;
     return rowPadding * (q + 1) * (rowPadding / 2 * q + r);

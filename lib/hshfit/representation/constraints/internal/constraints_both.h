@@ -9,7 +9,7 @@ namespace hshfit::inline representation::inline constraints {
 struct BothConstraints {
     bool nonNegative = false;
     const Brdf* added = nullptr;         ///< q + added >= 0
-    const Brdf* albedoSource = nullptr;  ///< albedo nowhere above that of this
+    const Brdf* albedoSource = nullptr;  ///< albedo nowhere above this BRDF's
     int mostRounds = 60;                 ///< of adding pairs where the sum is negative
 };
 

@@ -9,9 +9,9 @@ namespace hshfit::inline representation::inline constraints {
 
 /// min |x - start|^2 subject to row_k . x >= bound_k, by the dual active-set method of Goldfarb &
 /// Idnani (1983) with the identity as its matrix: from the unconstrained minimum, the most violated
-/// constraint is taken in at a time, and those whose multiplier would change its sign are let go.
-/// The normals of the active set are kept as a QR decomposition that is updated. Constraints may be
-/// added between solves, which go on from where they were.
+/// constraint is taken in at a time, and constraints whose multiplier would change its sign are let
+/// go. The normals of the active set are kept as a QR decomposition that is updated. Constraints
+/// may be added between solves, which go on from where they were.
 class LeastChange {
 public:
     explicit LeastChange(std::vector<double> start);

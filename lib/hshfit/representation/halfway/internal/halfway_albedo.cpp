@@ -15,8 +15,8 @@ constexpr int outgoingStrata = 12;
 constexpr int elevations = 8, isotropicPairs = 256;
 constexpr int azimuths = 6, anisotropicPairs = 512;
 constexpr double albedoWeight = 10;
-/// Cosines of theta_o below that of 85 degrees do not count: what measured files have there would
-/// rule the rest.
+/// The cosine of theta_o at 85 degrees. Directions beyond it do not count: the values that measured
+/// files have there would rule the rest.
 constexpr double leastCosine = 0.0872;
 
 /// Albedo of one stratum and its derivatives by the coefficients, [term][channel].

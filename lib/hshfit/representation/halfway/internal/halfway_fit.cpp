@@ -43,7 +43,7 @@ double weightOf(const HalfwaySamples& samples, std::size_t k, double f, double f
 }
 
 /// The sum of the weights of the pairs that no picture picks: the loss is a mean over these, and
-/// those that are seen come on top.
+/// the pairs that are seen come on top.
 double weightOf(const HalfwaySamples& samples) {
     double sum = 0;
     for (const HalfwaySpread spread : samples.spread)
@@ -111,7 +111,7 @@ struct Descent {
         const Eigen::LDLT<Eigen::MatrixXd> factor(matrix);
         return values - factor.solve(system.slope + pull * values);
     }
-    /// Whether the values tried take the place of those before.
+    /// Whether the values tried take the place of the values before.
     bool judge(Eigen::VectorXd tried, double found) {
         constexpr double settled = 5e-4, hopeless = 1e6;
         const auto penalised = [](double of, const Eigen::VectorXd& at) {

@@ -49,7 +49,8 @@ void addTile(const double* x, const double* scaled, std::size_t rows, std::size_
     }
 }
 
-/// The derivatives and, times the weights, those of the Gram matrix; the slope.
+/// Writes the derivatives to `x` and, times the weights, to `scaled`; their product is the Gram
+/// matrix. Adds to `slope`.
 void scaleTerms(const HalfwayResidualRows& rows, double* x, double* scaled, double* slope) {
     const Doubles lanes;
     for (std::size_t k = 0; k < rows.count; ++k) {

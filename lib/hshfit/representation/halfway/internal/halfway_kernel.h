@@ -19,13 +19,13 @@ struct HalfwayRows {
     std::uint16_t x, v, product, powers, harmonics, gap, handed, above, weight, count;
 };
 
-/// A run over i: its functions, and those that all of them are multiplied with.
+/// A run over i: its functions, and the factors that all of them are multiplied with.
 struct HalfwayRunLayout {
     std::uint16_t first, length;           ///< the rows of its functions
     std::array<std::uint16_t, 5> factors;  ///< rows of the functions that all have
     std::uint16_t factorCount;
-    /// Where its coefficients begin in a group: [channel of the group][i < stored], of which those
-    /// from `length` on are 0.
+    /// The place of its coefficients in a group: [channel of the group][i < stored], with 0 from
+    /// `length` on.
     std::uint32_t value, stored;
 };
 

@@ -7,8 +7,8 @@
 
 namespace hshfit::inline representation::inline halfway {
 
-/// Where errors of the logarithm begin to count as themselves, not as squares: on the way from
-/// constants, and in the end.
+/// The error of the logarithm from which on errors count as themselves, not as squares: on the way
+/// from constants, and in the end.
 inline constexpr double roughHuber = 1, fineHuber = 0.05;
 /// Pairs that the lobe is chosen by.
 inline constexpr std::size_t lobePairs = 10000;
@@ -34,13 +34,13 @@ struct LobeFound {
 /// 12, and where it is not bilateral, of turns; then of shelves; then with Smith's masking, or
 /// without it where f is not isotropic, if that halves the loss; then, where f is not isotropic, of
 /// both widths in small steps. All are numbers of single precision. After it come
-/// others, up to `mostLobes` in all, each the best of those that are wider or narrower by a factor
-/// of 1.5 than the ones before: few terms may prefer a lobe that all terms do not.
+/// others, up to `mostLobes` in all, each the best of the lobes that are wider or narrower by a
+/// factor of 1.5 than the ones before: few terms may prefer a lobe that all terms do not.
 std::vector<LobeFound> chooseLobes(const HalfwaySamples& grey, const HalfwayOrders& orders,
                                    const HalfwaySymmetry& symmetry, double floor);
 
-/// Coefficients of all terms and channels to begin with: those that the lobe was chosen with, in
-/// the brightness of each channel.
+/// Coefficients of all terms and channels to begin with: the coefficients that the lobe was chosen
+/// with, in the brightness of each channel.
 HalfwayValues startFrom(const LobeFound& found, const HalfwayModel& model,
                         const HalfwaySamples& samples, const HalfwaySymmetry& symmetry);
 

@@ -133,7 +133,8 @@ Four<T> sumOf(const HalfwayLayout<T>& layout, std::size_t first, std::size_t las
         for (std::size_t m = 1; m < run.factorCount; ++m)
             factor = hn::Mul(factor, hn::Set(tag, table[run.factors[m]]));
         const T* value = values + Channels * run.value;
-        // Beyond the functions of a run lie those of the next axis, whose coefficients are 0.
+        // Beyond the functions of a run lie functions of the next axis; the coefficients stored for
+        // them are 0.
         for (std::size_t i = 0; i < run.stored; i += lanes) {
             const Vector function = hn::Mul(factor, hn::LoadU(tag, table + run.first + i));
             // In turns, so that a sum does not wait for the one before.

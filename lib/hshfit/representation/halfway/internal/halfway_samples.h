@@ -31,12 +31,12 @@ struct HalfwaySamples {
     std::size_t channels() const { return pairs.empty() ? 0 : values.size() / size(); }
 };
 
-/// Three disjoint sequences of pairs: those that are fitted, pairs of all spreads that take no
+/// Three disjoint sequences of pairs: pairs that are fitted, pairs of all spreads that take no
 /// part, and uniform pairs that take no part.
 enum class HalfwayPart { fitted, heldOut, heldOutUniform };
 
-/// Appends pairs number `first` .. `last` - 1 of the sequence of a part, those below the horizon
-/// left out. The sequence is Roberts' R_d, frac(1/2 + n / phi_d^j) with phi_d^{d+1} = phi_d + 1
+/// Appends pairs number `first` .. `last` - 1 of the sequence of a part, leaving out pairs below
+/// the horizon. The sequence is Roberts' R_d, frac(1/2 + n / phi_d^j) with phi_d^{d+1} = phi_d + 1
 /// (M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018), d = 3 for an
 /// isotropic BRDF and 4 otherwise. Throws NumericError where f is not finite.
 void appendSamples(const Brdf& brdf, HalfwayPart part, std::size_t first, std::size_t last,
