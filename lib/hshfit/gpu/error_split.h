@@ -34,8 +34,8 @@ struct ErrorSplitOptions {
     std::function<void(std::size_t, std::size_t)> progress = {};
 };
 
-/// `coefficients` are those that `payload` was packed from. A single outgoing direction (map
-/// `direction`) is measured at itself, without interpolation.
+/// `payload` was packed from `coefficients`. A single outgoing direction (map `direction`) is
+/// measured at itself, without interpolation.
 /// Throws NumericError where f is 0 or does not project.
 ErrorSplit splitError(const Brdf& f, const Coefficients& coefficients, const Payload& payload,
                       const ErrorSplitOptions& options = {});

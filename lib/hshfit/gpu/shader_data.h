@@ -26,7 +26,7 @@ struct Band {
 };
 Band bandOf(int slot);
 
-/// The words of a language (language_words.h) with those of a payload and its light.
+/// Sets the words of a language (language_words.h), of a payload and of its light.
 void setWords(Language language, const Payload& payload, const std::string& prefix,
               kainjow::mustache::data& data);
 /// The map of outgoing directions: "parabolic" or "elevations" with their scales, or "single".

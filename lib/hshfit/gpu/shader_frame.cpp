@@ -86,7 +86,8 @@ void setFrameTurn(const Payload& payload, int environmentOrder, bool flat, data&
     const std::size_t lights = colours ? 3 : payload.head.channels.count();
     const auto columns = exchange(environmentOrder);
     const int slots = environmentOrder * environmentOrder;
-    // With the Condon-Shortley sign, functions are those about axes turned by pi about z.
+    // With the Condon-Shortley sign, functions equal the ones without it about axes turned by pi
+    // about z.
     page.set("gammaCosine", payload.head.condonShortley ? "+" : "-");
     page.set("gammaSine", payload.head.condonShortley ? "0.0 - " : "");
     data turns = list();

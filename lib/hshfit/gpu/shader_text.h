@@ -7,7 +7,7 @@ namespace hshfit::gpu {
 
 /// Text for a comment: printable ASCII on one line, so that nothing can end the comment.
 std::string commentText(std::string text);
-/// The same of the specification of what a shader evaluates, with the meaning of wo where it is a
+/// The same for the specification of what a shader evaluates, with the meaning of wo where it is a
 /// transmission.
 std::string sourceComment(const std::string& specification);
 

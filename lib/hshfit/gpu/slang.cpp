@@ -38,7 +38,8 @@ std::vector<std::string> withoutRegisters(const std::vector<std::string>& lines)
     return kept;
 }
 
-/// The comment from "HLSL, shader model" to the blank line after it becomes that of the module.
+/// The comment from "HLSL, shader model" to the blank line after it becomes the comment of the
+/// module.
 std::vector<std::string> withModule(const std::vector<std::string>& lines, std::string_view name) {
     const auto first = std::ranges::find_if(
         lines, [](const std::string& line) { return line.starts_with("// HLSL, shader model"); });

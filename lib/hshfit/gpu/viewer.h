@@ -38,7 +38,7 @@ struct ViewerInput {
     std::string noReference = "The source is not known.";  ///< shown where there is none
     /// Bands of the environment, which all panes share: 2 to 10.
     int environmentOrder = 10;
-    /// Those that the page can choose from, in `environmentOrder` bands; none: studio.
+    /// The lights that the page can choose from, in `environmentOrder` bands; none: studio.
     std::vector<ViewerLight> lights = {};
 };
 

@@ -110,7 +110,8 @@ struct Draw {
         }
     }
 
-    /// The flux of pixels, or of parts of them where they are not much smaller than those here;
+    /// The flux of pixels, or of parts of them where they are not much smaller than the pixels
+    /// here;
     /// the solid angles of the parts divide it, so that pixels that do not fit leave no pattern.
     void operator()(const PictureLight& light) const {
         const PictureGeometry from = geometryOf(light);

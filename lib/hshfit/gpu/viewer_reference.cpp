@@ -16,7 +16,7 @@ const double ReferenceTable::lastThetaDifference = radians(89);
 
 namespace {
 
-/// Below this elevation values are those at it, because some models have a pole at the horizon.
+/// Below this elevation the values at it are taken, because some models have a pole at the horizon.
 const double lowest = radians(1);
 
 std::size_t index(int i) {

@@ -36,9 +36,9 @@ struct ReferenceTable {
     int channels = 1;  ///< 1 or 3
     /// [rest][azimuth][row][column][channel], binary16.
     std::vector<std::uint16_t> cubeRoots;
-    /// Root mean square of the error of f cos(theta_i) over that of f cos(theta_i), for wi and wo
-    /// uniform over the hemisphere above 5 degrees of elevation, with as many pairs again whose
-    /// half vector is near the normal.
+    /// Root mean square error of f cos(theta_i), over the root mean square of f cos(theta_i), for
+    /// wi and wo uniform over the hemisphere above 5 degrees of elevation, with as many pairs again
+    /// whose half vector is near the normal.
     double error = 0;
     /// A GGX roughness about as wide as the highlight, for sampling directions.
     double roughness = 1;

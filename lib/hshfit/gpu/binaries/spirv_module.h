@@ -21,7 +21,7 @@ constexpr int spirvGroup = 64;
 ///     2  a storage buffer of pairs (std430): wo and wi, a vec4 each, whose fourth is not read
 ///     3  a storage buffer of floats: the values of each pair, channel after channel
 /// Specialisation constant 0 is the size of a group; work items beyond the pairs do nothing. The
-/// values are those of PREFIX_eval in GLSL. Throws UsageError, as the shader's source does, and
+/// values are what PREFIX_eval in GLSL returns. Throws UsageError, as the shader's source does, and
 /// where the program was built without glslang.
 std::vector<std::uint32_t> spirvModule(const Payload& payload, const std::string& prefix);
 std::vector<std::uint32_t> spirvModule(const FormPayload& payload,

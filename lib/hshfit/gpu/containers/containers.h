@@ -35,7 +35,7 @@ struct Container {
     std::string_view name;        ///< as on the command line
     std::string_view suffix;      ///< of the file: NAME.coef + suffix; {} is the number, "f16"
     std::string_view summary;     ///< one line
-    std::vector<Number> numbers;  ///< those that it can hold; it can hold every map
+    std::vector<Number> numbers;  ///< the types that it can hold; it can hold every map
     bool holdsSidecar;            ///< can be imported alone
 
     /// Throws UsageError for texels that the container cannot hold.

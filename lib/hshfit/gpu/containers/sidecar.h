@@ -74,7 +74,7 @@ struct LoadedTexels {
 LoadedTexels loadTexels(const std::string& path);
 
 /// The second step, once the index's texels have their bytes and sizes are known to be true.
-/// Checks slots, channels and layers against those of pack(); the tests go to `tests`.
+/// Checks slots, channels and layers against what pack() gives; the tests go to `tests`.
 Payload parseSidecar(std::string_view text, const std::string& file, SidecarIndex index,
                      std::vector<TestTriple>& tests);
 

@@ -80,7 +80,7 @@ Texels readTexels(const Fields& data) {
     return texels;
 }
 
-/// All functions of the basis, or those with m >= 0.
+/// All functions of the basis, or the functions with m >= 0.
 void readSlots(const Fields& root, Payload& payload) {
     const auto basis = bases::make(payload.head.basis, payload.head.order);
     const std::vector<double> stated = root.numbers("slots");

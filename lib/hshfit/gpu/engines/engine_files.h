@@ -23,7 +23,7 @@ struct EngineFile {
 };
 std::span<const EngineFile> engineFiles();
 
-/// The words of the templates. Snippets are those of shader.h and form_shader.h, without sampling.
+/// The words of the templates. Snippets come from shader.h and form_shader.h, without sampling.
 struct EngineMaterial {
     std::string name;  ///< of the export
     std::string title = {}, prefix = {}, snippet = {};

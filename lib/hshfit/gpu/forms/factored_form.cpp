@@ -45,8 +45,9 @@ private:
         return result_.stream.size() - 1;
     }
 
-    /// After the turn to azimuth 0 of wo a term of m > 0 is a product of two functions over sqrt 2;
-    /// those of sine terms are minus a cosine of wo times a sine of wi.
+    /// Once the pair is turned so that wo is at azimuth 0, a term with m > 0 is the product of two
+    /// functions over sqrt 2. For a sine term the product is minus a cosine function of wo times a
+    /// sine function of wi.
     bool turned(const TermBlock& block) const {
         return names_.symmetry.isotropic && block.name != "0";
     }

@@ -35,8 +35,8 @@ bool looksLikeForm(const std::string& path);
 /// read, nothing. Throws InputError for one that is no coefficient file's.
 std::optional<ImportedForm> readIfForm(const std::string& path, const BrdfOpener& open);
 
-/// Reads any file of such an export, as readPayload does. The form is that of the coefficient file
-/// that was exported, bit by bit, unless the export rounded it. Throws InputError.
+/// Reads any file of such an export, as readPayload does. The form equals the coefficient file that
+/// was exported, bit by bit, unless the export rounded it. Throws InputError.
 ImportedForm readForm(const std::string& path, const BrdfOpener& open);
 
 }  // namespace hshfit::gpu::inline forms

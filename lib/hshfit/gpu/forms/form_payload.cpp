@@ -43,7 +43,7 @@ bool holds(const Holding& row, Precision precision) {
     return std::ranges::find(row.holds, precision) != row.holds.end();
 }
 
-/// Every value's place among those that are kept.
+/// Every value's place among the values that are kept.
 std::vector<std::size_t> ranksOf(const StoredArray& array) {
     std::vector<std::size_t> ranks(array.values.size());
     std::size_t rank = 0;

@@ -23,7 +23,7 @@ struct StreamNumber {
 struct FormPayload {
     Representation form;  ///< as rounded: what shaders and files give
     std::vector<StreamNumber> stream;
-    Texels texels;  ///< one layer; those of normalised numbers have scale 1 and offset 0
+    Texels texels;  ///< one layer; normalised numbers have scale 1 and offset 0
     /// f of the BRDF that the form adds, per channel, where it is the same for all directions; what
     /// the shader adds to the form. Empty: nothing is added.
     std::vector<double> constant = {};
@@ -46,7 +46,7 @@ Number numberFor(const Representation& form);
 /// belong together, NumericError for a value beyond the range of the number type.
 FormPayload packForm(Representation form, std::optional<Number> number = std::nullopt);
 
-/// The inverse: `skeleton` has everything but the numbers, and `texels` those. Throws InputError
+/// The inverse: `skeleton` has everything but the numbers, which are in `texels`. Throws InputError
 /// that starts with `file` where a texel is no number of its array or the counts differ.
 FormPayload unpackForm(Representation skeleton, Texels texels, const std::string& file);
 

@@ -55,9 +55,9 @@ public:
     std::size_t groups() const { return texels_.layers; }
 
     /// The weights of linear interpolation along `half` and `plane`: as they are, or in steps of
-    /// 1/256, as GPUs filter textures. Those along `horizon` are the shader's own.
+    /// 1/256, as GPUs filter textures. Weights along `horizon` are the shader's own.
     enum class Weights { exact, filtered };
-    /// 4 groups() sums; those beyond the channels are 0.
+    /// Writes 4 groups() sums; the ones beyond the channels are 0.
     void evaluate(const Direction& wi, const Direction& wo, Weights weights, double* out) const;
 
 private:

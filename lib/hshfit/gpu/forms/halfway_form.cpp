@@ -44,8 +44,8 @@ std::string functionName(char axis, int n) {
     return n == 0 ? "" : fmt::format("{}{}", axis, n);
 }
 
-/// p_1 .. p_{count-1} of an axis by their recurrence, p_{n+1} = up t p_n - down p_{n-1}:
-/// sqrt(2 n + 1) times that of Legendre's polynomials, or Chebyshev's, where t is doubled.
+/// p_1 .. p_{count-1} of an axis by their recurrence, p_{n+1} = up t p_n - down p_{n-1}: Legendre's
+/// polynomials times sqrt(2 n + 1), or Chebyshev's polynomials, for which t is doubled.
 data axisSteps(char axis, int count, bool chebyshev, ShaderCost& cost) {
     data rows{data::type::list};
     for (int n = 0; n + 1 < count; ++n) {

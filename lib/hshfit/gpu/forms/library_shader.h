@@ -39,7 +39,7 @@ struct SharedSums {
     std::size_t stride() const {  ///< texels of a material
         return 1 + (table ? 3 * table->groups() : parts.size());
     }
-    std::size_t width() const { return stride() + further; }  ///< and those after them
+    std::size_t width() const { return stride() + further; }  ///< with the further texels
     std::size_t count() const { return materials.size() / (4 * stride()); }
 };
 
@@ -53,8 +53,8 @@ Texels materialTexels(const SharedSums& sums);
 /// A snippet with one function for all materials:
 ///     PREFIX_material(material, wo, wi)     f(wo, wi) in 1/sr, linear Rec. 709
 /// `material` counts from 0. The functions stand in the text, or are looked up in the table, a
-/// second texture with a filter; the texels of the materials are read as those of a form in a
-/// texture (form_shader.h). Throws UsageError for OSL, whose textures take no whole numbers as
+/// second texture with a filter; the texels of the materials are read like the texels of a form in
+/// a texture (form_shader.h). Throws UsageError for OSL, whose textures take no whole numbers as
 /// places.
 std::string libraryShaderSource(Language language, const SharedSums& sums,
                                 const std::string& prefix);

@@ -8,9 +8,9 @@
 namespace hshfit::gpu::inline forms {
 
 /// |ln((g + offset) / (f + offset))| for g with a table in place of f without, over all materials,
-/// channels and pairs: those of spreadPairs(), 8192 about the mirror direction down to the horizon,
-/// that direction itself, and normal incidence, with cosines from 1e-3, which is 0.06 degrees above
-/// the horizon. The table is filtered as by GPUs.
+/// channels and pairs. The pairs are spreadPairs(), up to 8192 about the mirror direction down to
+/// the horizon, and pairs in the mirror direction itself and at normal incidence. Their cosines are
+/// 1e-3 or more, which is 0.06 degrees above the horizon. The table is filtered as GPUs filter it.
 struct TableError {
     double largest = 0, mean = 0;
 };

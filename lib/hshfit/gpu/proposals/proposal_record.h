@@ -36,9 +36,9 @@ std::string proposalText(const ProposalRecord& record);
 /// for what is no proposal, and where the directions of its tests differ from the library's
 /// by more than 1e-9.
 std::optional<ProposalRecord> parseProposal(const JsonFields& sidecar);
-/// The same of the text of a sidecar in `file`.
+/// The same for the text of a sidecar in `file`.
 std::optional<ProposalRecord> parseProposal(std::string_view sidecar, const std::string& file);
-/// The same of any file of an export (loadTexels). Throws InputError.
+/// The same for any file of an export (loadTexels). Throws InputError.
 std::optional<ProposalRecord> readProposal(const std::string& path);
 
 }  // namespace hshfit::gpu::inline proposals

@@ -10,7 +10,7 @@
 namespace hshfit::gpu::inline proposals {
 
 struct ProposalShaderOptions {
-    std::string prefix = "hsh";  ///< of every name, that of the snippet before it
+    std::string prefix = "hsh";  ///< of every name, the same as in the snippet before it
     bool cosine = false;         ///< whether PREFIX_eval gives f cos(theta_i); for the comment
 };
 

@@ -22,7 +22,7 @@ std::string withoutBindings(const std::string& wgsl) {
     return text;
 }
 
-/// Puts arguments before those of a function, where it is declared and where it is called.
+/// Puts arguments before a function's own, where it is declared and where it is called.
 void addArguments(const std::string& function, const std::string& declared,
                   const std::string& called, std::string& text) {
     const std::string call = function + "(";

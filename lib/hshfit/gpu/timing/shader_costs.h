@@ -20,7 +20,7 @@ public:
 
     /// Throws NumericError for a shader that does not compile.
     ShaderCost of(const TimedShader& shader) const;
-    /// The same of a form; none where it has no shader of its own.
+    /// The same for a form; none where it has no shader of its own.
     std::optional<ShaderCost> of(const Representation& form) const;
 
 private:

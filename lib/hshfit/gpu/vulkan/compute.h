@@ -66,7 +66,7 @@ struct ComputeResource {
     Texels texels = {};
     std::vector<Texels> levels = {};  ///< of a texture, after its first: half as wide and high
     std::vector<float> numbers = {};
-    std::size_t count = 0;  ///< floats of a storage buffer; at least those of `numbers`
+    std::size_t count = 0;  ///< floats of a storage buffer, at least numbers.size()
 };
 
 /// A compute shader with its resources, on a device that outlives it.

@@ -9,7 +9,7 @@
 
 namespace hshfit::gpu::inline three {
 
-/// The same of both kinds of payload, as the templates need it.
+/// The same for both kinds of payload, as the templates need it.
 struct ThreeInput {
     std::string title, generator, prefix;
     std::string form;    ///< in words, with its orders
@@ -26,8 +26,8 @@ struct ThreeInput {
     std::optional<Texels> table;         ///< of the functions of a library, interpolated
 };
 
-/// The parts of a snippet of lookups for a node of three.js: the function, and those that it calls.
-/// Table, cube, sampler, turn and number of levels are arguments.
+/// The parts of a snippet of lookups for a node of three.js: the function, and the functions that
+/// it calls. Table, cube, sampler, turn and number of levels are arguments.
 struct LookUpNode {
     std::string main, functions;
 };
