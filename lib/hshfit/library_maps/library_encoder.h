@@ -10,8 +10,9 @@ namespace hshfit::inline library_maps {
 /// numbers that are averaged are f at material_library::fitPairs(), [channel][pair], so that a
 /// texel of a level is fitted to the mean reflectance of the texels that it stands for.
 ///
-/// The error of a texel is that of f cos(theta_i) over these pairs by solid angle, of the numbers
-/// as stored, relative to its norm: with all that the basis leaves out.
+/// The error of a texel is the L2 error of f cos(theta_i) over these pairs, by solid angle,
+/// relative to the norm of f cos(theta_i). It is taken with the numbers as stored and contains all
+/// that the basis leaves out.
 class LibraryEncoder final : public TexelEncoder {
 public:
     LibraryEncoder(const material_library::Basis& basis, std::size_t channels, gpu::Number number);

@@ -13,7 +13,7 @@
 
 namespace hshfit::inline library_maps {
 
-/// The word `format` of such a file, and that of an export of it.
+/// The word `format` in the file of a library map, and in an export of it.
 inline constexpr const char *libraryMapFormat = "hshfit-library-map",
                             *libraryMapExportFormat = "hshfit-gpu-library-map";
 
@@ -50,7 +50,7 @@ struct LibrarySidecar {
 std::string toText(const LibrarySidecar& sidecar);
 /// Throws InputError that starts with `file`.
 LibrarySidecar readLibrarySidecar(const std::string& file);
-/// The same of a text that is the content of `file`.
+/// The same for a text that is the content of `file`.
 LibrarySidecar parseLibrarySidecar(std::string_view text, const std::string& file);
 /// Whether a file is one: of a map, or of an export of a map, which has the same keys beside its
 /// own.

@@ -11,7 +11,8 @@ namespace hshfit::material_library {
 namespace {
 
 constexpr int mostTop = 255;
-/// Of lit pixels beside all pairs: with the peaks, of 0.5 to 8 the least FLIP without a loss.
+/// The weight of lit pixels where all pairs have 1. Of the values 0.5 to 8, tried with the peaks,
+/// this one has the least FLIP without a loss.
 constexpr double pictureWeight = 4;
 
 int halfRange(std::uint8_t width) {

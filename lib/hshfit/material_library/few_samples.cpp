@@ -337,7 +337,7 @@ std::vector<NextPair> Posterior::next(const NextOptions& options) const {
               (std::pow(options.relative * f, 2) + std::pow(options.absolute, 2)) /
               std::pow(f + logOffset, 2);
     }
-    // Of each plane the covariance of the terms with the sums at the pairs.
+    // For each plane, the covariance of the terms with the sums at the pairs.
     std::array<MatrixXd, planes> products, variances;
     double sum = s.restSum();
     for (std::size_t p = 0; p < planes; ++p) {

@@ -60,8 +60,9 @@ public:
     Posterior(const LogSpace& space, const Library& library);
     ~Posterior();
 
-    /// The maximum a posteriori given all of these, which is also the mean; from the prior anew.
-    /// Channels are those of the first observation. Throws UsageError for none.
+    /// Starts anew from the prior and takes the maximum a posteriori given all of these, which is
+    /// also the mean. The material gets the channels of the first observation. Throws UsageError
+    /// for none.
     Agreement observe(std::span<const Observation> observations);
 
     LogMaterial material() const;

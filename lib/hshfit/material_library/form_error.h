@@ -12,7 +12,7 @@ namespace hshfit::material_library {
 struct FormError {
     double meanLog = 0;     ///< of |ln(1 + f c) - ln(1 + g c)|
     double logError = 0;    ///< of |ln((g + logOffset) / (f + logOffset))|
-    double relativeL2 = 0;  ///< root of the sum of ((g - f) c)^2 over that of (f c)^2; 0 for f = 0
+    double relativeL2 = 0;  ///< sqrt(sum of ((g - f) c)^2 / sum of (f c)^2); 0 for f = 0
     double maximum = 0;     ///< of |g - f| c, 1/sr
     double largest = 0;     ///< f c, 1/sr
     double flip = 0;        ///< mean FLIP of the picture error, where it was measured

@@ -37,8 +37,8 @@ struct Moments {
     Eigen::MatrixXd product;
 };
 
-/// Moments about `centre` of the vectors of each fold: the materials whose number, modulo `folds`,
-/// is that of the fold.
+/// Moments about `centre` of the vectors of each fold. Fold k has the materials whose number modulo
+/// `folds` is k.
 std::vector<Moments> momentsOf(const VectorSet& all, const std::vector<double>& weights,
                                const Eigen::VectorXd& centre, std::size_t folds) {
     const Eigen::Index terms = all.terms();
@@ -86,8 +86,8 @@ Principal principalOf(const Moments& moments, const Eigen::VectorXd& centre, Eig
     return principal;
 }
 
-/// The largest distance of the channels of each material from the first components of the other
-/// folds, which are those of its own fold in `without`.
+/// For each material, the largest distance of its channels from the first components of the other
+/// folds: without[k] has the components of all folds but k.
 std::vector<double> distancesOf(const VectorSet& all, const std::vector<Principal>& without) {
     std::vector<double> distances(all.materials(), 0.0);
     all.eachBlock([&](const VectorBlock& block) {
@@ -273,7 +273,8 @@ Basis basisOf(const LogSpace& space, const Principal& principal, const Widths& w
     return basis;
 }
 
-/// The numbers of the materials that give the basis of a trial, and of those it is tried on.
+/// The numbers of the materials that give the basis of a trial, and of the materials that it is
+/// tried on.
 struct Division {
     std::vector<std::size_t> fitted, held;
 };
@@ -304,8 +305,8 @@ double unseenFlipOf(const LogSpace& space, const Basis& basis, const MaterialSto
     return sum / static_cast<double>(flips.size());
 }
 
-/// Trials on the materials that are held out, and their errors in the basis of so many components;
-/// 0 becomes those of the best trial.
+/// Adds trials on the materials that are held out, and their errors in the basis of `components`
+/// components. A 0 there becomes the number of the best trial.
 void addTrials(const LogSpace& space, const MaterialStore& store, const VectorFile& vectors,
                const LearnOptions& options, bool pictures, std::size_t& components,
                LearnedBasis& learned) {

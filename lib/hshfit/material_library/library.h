@@ -66,14 +66,14 @@ Material withHalfway(const Brdf& brdf, const std::string& name, const std::strin
                      bool seen = false);
 
 /// Learns a basis from the materials of a store, which is sorted, and hands each material, as the
-/// library stores it, to `take`, in the order of names: also those that have forms of their own.
-/// The same materials give the same bytes in whatever order and parts they came. The answer is the
-/// library without its materials. Memory holds some 100 bytes a material. Throws as learnBasis.
+/// library stores it, to `take`, in the order of names: also the materials that have forms of their
+/// own. The same materials give the same bytes in whatever order and parts they came. The answer is
+/// the library without its materials. Memory holds some 100 bytes a material. Throws as learnBasis.
 Library learn(const LogSpace& space, const MaterialStore& store, const LearnOptions& options,
               const Limits& limits, const std::function<void(Material)>& take,
               LearnedBasis* learned = nullptr);
 
-/// The same of materials in memory, which are in the answer. Names have to be unique (UsageError).
+/// The same for materials in memory, which are in the answer. Names have to be unique (UsageError).
 Library learn(const LogSpace& space, std::vector<Measured> measured, std::vector<Material> own,
               const LearnOptions& options, const Limits& limits, LearnedBasis* learned = nullptr);
 

@@ -15,7 +15,7 @@ namespace hshfit::material_library {
 /// docs/explanation/library_of_materials.md has the others.
 inline constexpr const char* headField = "hshfit_library";
 
-/// Whether the first bytes of a file are those of a library.
+/// Whether a file with these first bytes is a library.
 inline bool looksLikeLibrary(std::span<const unsigned char> head) {
     const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
     return text.starts_with(TensorFile::magic) &&

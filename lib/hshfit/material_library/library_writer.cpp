@@ -172,7 +172,7 @@ void LibraryWriter::write(const Library& library, const MeasuredList& measured,
         writer.add("exponents", Type::f32, {kept.channels, terms},
                    putting(measured, &Measured::exponents));
         writer.add("tops", Type::f32, {kept.channels}, putting(measured, &Measured::tops));
-        // Of files that did not say it the rest is not known.
+        // The rests are not known for files that do not state them.
         if (kept.rests == measured.count * restRows)
             writer.add("rests", Type::f32, {measured.count, restRows},
                        putting(measured, &Measured::rest));

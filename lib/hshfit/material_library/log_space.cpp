@@ -14,7 +14,7 @@
 namespace hshfit::material_library {
 namespace {
 
-constexpr unsigned fittedSeed = 2;     ///< of the pairs; those of errors have 1
+constexpr unsigned fittedSeed = 2;     ///< of the pairs; the pairs that measure errors have seed 1
 constexpr int fittedIncoming = 200;    ///< pairs of one outgoing direction
 constexpr double byPair = 0.5;         ///< share of the weight that counts pairs
 constexpr double ridge = 1e-8;         ///< of the mean diagonal: the terms are nearly dependent

@@ -10,7 +10,8 @@ namespace hshfit::material_library {
 struct MaterialLook {
     LinearRgb albedo{};    ///< the light of a uniform dome that is reflected, as a share
     double luminance = 0;  ///< of the albedo, Rec. 709
-    /// Of the albedo in CIE L*a*b*: 0 for grey, and degrees from 0 to 360 from a to b; 0 for grey.
+    /// Chroma and hue of the albedo in CIE L*a*b*. Chroma is 0 for grey. Hue is in degrees from 0
+    /// to 360, from a towards b, and 0 for grey.
     double chroma = 0, hue = 0;
     /// The share of the light reflected at 45 degrees that goes to within 10 degrees of the mirror
     /// direction, luminance; 0.021 for Lambert, near 1 for a mirror.

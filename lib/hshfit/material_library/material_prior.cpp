@@ -67,7 +67,8 @@ MatrixXd componentsOf(const Numbers& numbers, std::size_t most) {
     return solver.eigenvectors().rowwise().reverse().leftCols(std::min(count, sum.cols()));
 }
 
-/// The distribution of materials with these components, `beyond` them those of other materials.
+/// The distribution of materials with these components. `beyond` has the rests of other materials,
+/// beyond the components.
 Normal normalOf(const MatrixXd& numbers, const MatrixXd& components, const MatrixXd& beyond) {
     const auto count = static_cast<double>(numbers.cols());
     const auto k = static_cast<double>(components.cols()), shrink = k / (k + count);

@@ -12,7 +12,8 @@
 namespace hshfit::material_library {
 
 /// Materials on their way into a library, on a disk (scratch_file.h): memory holds their names,
-/// some 50 bytes a material. Those that learning takes, and those that have forms of their own.
+/// some 50 bytes a material. It has the materials that learning takes, and the materials with forms
+/// of their own.
 ///
 /// Members throw OutputError where the disk does not take or give the bytes.
 class MaterialStore {
@@ -29,7 +30,7 @@ public:
     /// materials of one name.
     void sort();
 
-    /// Of the materials that learning takes; the numbers of these are below it.
+    /// The number of materials that learning takes. They are numbered from 0.
     std::size_t size() const { return measured_.size(); }
     std::size_t channels(std::size_t measured) const { return measured_[measured].channels; }
     std::size_t ownForms() const { return own_.size(); }

@@ -44,8 +44,8 @@ private:
 };
 
 /// Numbers of at most `most` of `count` materials, of which f is known at fitPairs(): each has the
-/// largest distance from those before it, in the mean square of ln(f + logOffset) by solid angle,
-/// the first from the mean of all. None is like another. values[material][channel][pair]
+/// largest distance from the materials before it, in the mean square of ln(f + logOffset) by solid
+/// angle, the first from the mean of all. None is like another. values[material][channel][pair]
 std::vector<std::size_t> farthest(std::span<const float> values, std::size_t count,
                                   std::size_t most);
 

@@ -11,7 +11,8 @@
 namespace hshfit::material_library {
 namespace {
 
-/// Halves hold whole numbers up to this one, those of components of so many bits.
+/// Half precision holds every whole number up to this one, and so every coordinate of at most
+/// `widestHalf` bits.
 constexpr double wholeHalves = 2048;
 constexpr std::uint8_t widestHalf = 12;
 

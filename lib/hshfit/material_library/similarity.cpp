@@ -21,7 +21,7 @@ constexpr double nudge = 1e-3;     ///< of discs at one place, in directions of 
 constexpr int sweeps = 1000;
 constexpr double leastOverlap = 1e-3;
 
-/// Columns whose distances are those of the materials.
+/// A column for each material. Columns are as far apart as their materials.
 Eigen::MatrixXd pointsOf(const LogSpace& space, std::span<const LogMaterial> materials) {
     const auto terms = static_cast<Index>(logTerms().size());
     Eigen::MatrixXd points(colours * terms, static_cast<Index>(materials.size()));

@@ -8,9 +8,9 @@
 
 namespace hshfit::inline materials {
 
-/// Inputs of UsdPreviewSurface (specification 2.5, openusd.org) in its metalness workflow, those of
-/// an opaque, even surface. Colours are linear Rec. 709; `ior` is the index of the base and of the
-/// coat.
+/// Inputs of UsdPreviewSurface (specification 2.5, openusd.org) in its metalness workflow, as far
+/// as an opaque, even surface has them. Colours are linear Rec. 709; `ior` is the index of the base
+/// and of the coat.
 struct UsdPreviewSurface {
     MaterialColour diffuseColour{0.18, 0.18, 0.18};
     double metallic = 0, roughness = 0.5, ior = 1.5;

@@ -24,8 +24,9 @@ std::vector<double> mapValue(const LibraryMap& map, const MapFunctions& function
                              const MapPlace& place, Wrap wrap, const Direction& wo,
                              const Direction& wi);
 
-/// A snippet with the functions of `mapShader` but those of light. Throws UsageError for OSL, whose
-/// table would be a second file of another kind, and for more layers than a language has.
+/// A snippet with the functions of `mapShader`, except its functions for light. Throws UsageError
+/// for OSL, whose table would be a second file of another kind, and for more layers than a language
+/// has.
 std::string libraryMapShader(gpu::Language language, const LibraryMap& map,
                              const MapFunctions& functions, const MapShaderOptions& options);
 

@@ -11,7 +11,7 @@ namespace hshfit::material_library {
 /// Zones of pairs in which the rest beyond the terms is alike: by the angle of the lower direction,
 /// up to 60, 75, 85 and 90 degrees, then by the angle of the half vector, up to 2, 20 and 90.
 inline constexpr std::size_t restZones = 12;
-/// Measured::rest has those of the sum of the channels, then those of their differences.
+/// Measured::rest has the zones for the sum of the channels, then the zones for their differences.
 inline constexpr std::size_t restRows = 2 * restZones;
 std::size_t restZone(const Direction& wi, const Direction& wo);
 

@@ -20,13 +20,13 @@ struct Normal {
 };
 using Prior = std::array<Normal, planes>;
 
-/// The distributions that materials give: as many components as the basis has, whose covariance is
-/// shrunk towards its diagonal by K / (K + M), K components and M materials, and, beyond them, the
-/// covariance of what materials that took no part in components have beyond these, half of it alike
-/// in all directions.
+/// The distributions that materials give. Within as many components as the basis has, the
+/// covariance is shrunk towards its diagonal by K / (K + M), with K components and M materials.
+/// Beyond the components it is the covariance of the rests of materials that took no part in
+/// finding them, half of it alike in all directions.
 struct MaterialPrior {
-    /// The materials that `library` was learned from, or those of its codes where it is final; at
-    /// most a thousand, spread evenly. Throws InputError for fewer than three.
+    /// The materials that `library` was learned from or, where it is final, the materials that its
+    /// codes hold; at most a thousand, spread evenly. Throws InputError for fewer than three.
     MaterialPrior(const LogSpace& space, const Library& library);
 
     std::size_t count() const { return static_cast<std::size_t>(numbers[0].cols()); }
