@@ -13,7 +13,7 @@
 
 namespace hshfit::inline filtered_maps {
 
-/// The word `format` of such a file, and that of an export of it.
+/// The word `format` in the file of a filtered map, and in an export of it.
 inline constexpr const char *filteredMapFormat = "hshfit-filtered-map",
                             *filteredMapExportFormat = "hshfit-gpu-filtered-map";
 

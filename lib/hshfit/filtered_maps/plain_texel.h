@@ -7,7 +7,7 @@
 namespace hshfit::inline filtered_maps {
 
 /// f cos(theta_i) of a texel of level 0: its model in its own frame, 0 below its horizon.
-/// `numbers` are those of MipLayout.
+/// `numbers` are laid out as MipLayout says.
 class PlainTexel {
 public:
     PlainTexel(const FilteredSurface& surface, const MipLayout& layout, const FilteredTexel& texel,

@@ -31,12 +31,13 @@ public:
     static constexpr std::size_t most = 65536;  ///< materials of all levels together
 
     struct Options {
-        std::size_t clusters = 256;  ///< of each level, of fewer texels fewer
+        std::size_t clusters = 256;  ///< of each level; fewer where it has fewer texels
         std::size_t levels = 1;      ///< of the map
         std::function<void(std::size_t done, std::size_t total)> progress = {};
     };
-    /// Materials of the first levels, from samples of them; those of further levels are learnt when
-    /// all their texels are known. Throws UsageError for more materials than indices.
+    /// Learns the materials of the first levels from samples of these levels. The materials of
+    /// further levels are learnt when all their texels are known. Throws UsageError for more
+    /// materials than indices.
     ClusterEncoder(LowRank lowRank, const LevelSamples& samples, const Options& options,
                    Processes& processes);
 
@@ -50,7 +51,7 @@ public:
     void learn(std::size_t level, std::span<const float> linear) override;
 
     std::span<const double> shapes() const override { return lowRank_.shapes(); }
-    /// Of all levels known so far.
+    /// The materials of all levels known so far.
     std::span<const float> centres() const override { return centres_; }
 
     const LowRank& lowRank() const { return lowRank_; }

@@ -16,7 +16,7 @@ class JsonFields;
 
 namespace hshfit::inline material_maps {
 
-/// The word `format` of such a file, and that of an export of it.
+/// The word `format` in the file of a material map, and in an export of it.
 inline constexpr std::string_view materialMapFormat = "hshfit-material-map",
                                   materialMapExportFormat = "hshfit-gpu-map";
 
@@ -51,7 +51,7 @@ struct MapSidecar {
 std::string toText(const MapSidecar& sidecar);
 /// Throws InputError that starts with `file`.
 MapSidecar readMapSidecar(const std::string& file);
-/// The same of a text that is the content of `file`.
+/// The same for a text that is the content of `file`.
 MapSidecar parseMapSidecar(std::string_view text, const std::string& file);
 /// Whether a file is one: of a map, or of an export of a map, which has the same keys beside its
 /// own.

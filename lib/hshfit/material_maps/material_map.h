@@ -28,8 +28,8 @@ public:
     std::vector<double> numbers(std::size_t level, std::size_t column, std::size_t row) const {
         return texture_.numbers(level, column, row);
     }
-    /// Its coefficients, of the form halfway those of the centre that `material` stands for. Throws
-    /// UsageError for a texel or a level that the map does not have.
+    /// The coefficients of a texel; for the form halfway, the coefficients of the centre that its
+    /// `material` names. Throws UsageError for a texel or a level that the map does not have.
     Coefficients coefficients(std::size_t level, std::size_t column, std::size_t row) const;
     /// The index of the shared material of a texel, of the forms clusters and halfway. Throws
     /// InputError for one that there is not, and UsageError as `coefficients` does.

@@ -79,8 +79,8 @@ public:
     virtual std::unique_ptr<BandDealer> deal(std::size_t bands);
     /// Returns when all processes have come here.
     virtual void meet() {}
-    /// To be called while an exception is handled: the others learn of it. Throws that of the
-    /// process with the lowest number.
+    /// To be called while an exception is handled: the others learn of it. Throws the exception of
+    /// the process with the lowest number.
     virtual void fail() {}
 };
 

@@ -195,7 +195,7 @@ double squareDistance(const float* a, const float* b, std::size_t dimensions) {
     return square;
 }
 
-/// Each start is drawn in proportion to its weighted square distance from those before it.
+/// Each start is drawn in proportion to its weighted square distance from the starts before it.
 std::vector<float> starts(const WeightedPoints& all, const ClusterOptions& options) {
     const std::size_t count = all.weights.size(), d = all.dimensions;
     std::mt19937_64 generator(options.seed);

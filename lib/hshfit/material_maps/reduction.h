@@ -73,7 +73,7 @@ struct WeightedPoints {
     std::size_t dimensions = 1;
 };
 
-/// Settings of `clusterCentres`; the seed is that of the random starts.
+/// Settings of `clusterCentres`; the seed is for the random starts.
 struct ClusterOptions {
     std::size_t clusters = 256;
     int mostRounds = 40;

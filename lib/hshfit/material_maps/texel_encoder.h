@@ -52,8 +52,8 @@ public:
     }
 };
 
-/// All coefficients of a texel, as float16 or float32. Errors are zero: those of rounding, at most
-/// 2^-11 or 2^-24 of each number, are left out.
+/// All coefficients of a texel, as float16 or float32. Errors are zero: rounding, at most 2^-11 or
+/// 2^-24 of each number, is left out.
 class PlainEncoder final : public TexelEncoder {
 public:
     PlainEncoder(const TexelLayout& layout, gpu::Number number);

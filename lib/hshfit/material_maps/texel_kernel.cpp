@@ -23,7 +23,7 @@ namespace hshfit::inline material_maps {
 /// The lobes of a texel and how they make its channels.
 struct Mixture {
     const float* shapes;   ///< [place][lobe][outgoing][slot]
-    std::size_t pitch;     ///< from the shapes of a channel to those of the next; 0: one for all
+    std::size_t pitch;     ///< from the shapes of a channel to the next channel's; 0: one for all
     const float* weights;  ///< [lobe][channel]
     std::size_t lobes, channels, outgoing, slots, stride;
 };
@@ -299,7 +299,8 @@ void TexelKernel::run(const TexelBlock& block, std::size_t first, std::size_t co
             (table_.values().data(), table_.rowStride(), place, lobes * shape,
              shapes.data() + c * shapesLength);
         }
-        // Vectors write beyond a texel: into those that come next, or into a copy near the end.
+        // Vectors write beyond a texel: into the texels that come next, or into a copy near the
+        // end.
         float* const to = out + t * floats;
         const bool room = (count - t - 1) * floats >= slack;
         HWY_DYNAMIC_DISPATCH(mix)(mixture, room ? to : copy.data());

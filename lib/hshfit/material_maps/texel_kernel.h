@@ -52,7 +52,7 @@ struct HalfRange {
 HalfRange toHalfLayers(const float* texels, std::size_t stride, std::size_t count,
                        std::size_t layers, std::uint16_t* out, std::size_t pitch);
 
-/// out[k] = mean of the values of two neighbours, above[2 k], above[2 k + 1], and those below; a
+/// out[k] = mean of the values of two neighbours, above[2 k], above[2 k + 1], and the two below; a
 /// texel has `step` values.
 void meanOfFour(const float* above, const float* below, std::size_t count, std::size_t step,
                 float* out);

@@ -8,9 +8,10 @@
 
 namespace hshfit::inline material_maps {
 
-/// The coefficients that a texel of a material map has, and their order. A *shape* is those of one
-/// channel, [outgoing][slot]; a texel in float32 is [outgoing][lane] with lane = channel * slots +
-/// slot, padded by zeros to groups of four: an RGBA layer of a texture array each.
+/// The coefficients that a texel of a material map has, and their order. A *shape* is the
+/// coefficients of one channel, [outgoing][slot]; a texel in float32 is [outgoing][lane] with lane
+/// = channel * slots + slot, padded by zeros to groups of four: an RGBA layer of a texture array
+/// each.
 struct TexelLayout {
     OutgoingSet outgoing = {};
     std::vector<int> slots = {};  ///< the functions kept: l (l + 1) + m

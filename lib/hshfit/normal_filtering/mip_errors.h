@@ -86,9 +86,9 @@ struct MipErrorShare {
     std::function<void(std::vector<double>& records)> gather = {};
 };
 
-/// The same for texels that the caller gathers: texel(k, random) in rising order, one at a time,
-/// for those of the share; it draws no numbers where others measure some. `surface` needs no
-/// `texel`, and no size.
+/// The same for texels that the caller gathers. texel(k, random) is called for the texels of the
+/// share, in rising order, one at a time. It must not draw random numbers where other processes
+/// measure some of the texels. `surface` needs no `texel`, and no size.
 MipErrors measureMipTexels(
     const FilteredSurface& surface, const MipLayout& layout, std::size_t count,
     const std::function<MeasuredTexel(std::size_t k, std::mt19937_64& random)>& texel,

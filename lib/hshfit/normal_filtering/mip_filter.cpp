@@ -102,7 +102,7 @@ struct MipFilter::Work {
     std::unique_ptr<ShRotation> rotation;
     std::deque<std::vector<SurfaceTexel>> held = {};  // rows of the base
     std::size_t firstHeld = 0;
-    std::vector<Level> levels = {};  // those that are made; [0] is the base
+    std::vector<Level> levels = {};  // the levels that are made; [0] is the base
 
     void addHarmonics(std::span<const SurfaceTexel> row, std::size_t first, std::size_t count,
                       std::vector<double>& out) const;
@@ -113,8 +113,9 @@ struct MipFilter::Work {
     void emit(std::size_t level, std::vector<double> row);
 };
 
-/// Coefficients of D turned to each of `count` texels in slots l(l+1) + m; those of the isotropic
-/// table are products with `out`, which has the Y_(l,m) of the normals.
+/// Writes the coefficients of D turned to each of `count` texels, in slots l(l+1) + m. For an
+/// isotropic table `out` has the Y_(l,m) of the normals before, which are multiplied by the zonal
+/// coefficients.
 void MipFilter::Work::addHarmonics(std::span<const SurfaceTexel> row, std::size_t first,
                                    std::size_t count, std::vector<double>& out) const {
     const auto slots = static_cast<std::size_t>(basis->slots());
@@ -201,7 +202,7 @@ std::vector<double> MipFilter::Work::firstRow(std::size_t y) const {
     return out;
 }
 
-/// Rows of `level` + 1 as far as those held of `level` allow.
+/// Rows of `level` + 1, as many as the rows held of `level` allow.
 void MipFilter::Work::reduce(std::size_t level) {
     Level& below = levels[level];
     const std::size_t size = layout.size(), above = levels[level + 1].width;

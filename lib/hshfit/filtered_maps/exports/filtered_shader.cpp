@@ -27,7 +27,7 @@ using gpu::Language;
 using gpu::shaderNumber;
 using kainjow::mustache::data;
 
-/// The layers before those that the sampler may blend.
+/// The layers before the ones that the sampler may blend.
 constexpr std::size_t momentLayers = 3;
 
 /// The name that a snippet gives to a number of a texel.
@@ -181,8 +181,8 @@ void setNodes(const FilteredSidecar& map, const LobeNumbers& lobes, data& page) 
     }
     page.set("nodes", rows);
     page.set("mixed", fmt::format("{}", fmt::join(lanes, ", ")));
-    // The nearest node, of two equally near ones the lower, as LobeTable::gaussians takes it; the
-    // margin is that of half precision.
+    // The nearest node, as LobeTable::gaussians takes it: the lower of two nodes that are equally
+    // near, with a margin for half precision.
     const std::string toInt = gpu::wordOf(page, "toInt");
     const auto nearest = [&](const char* place, std::size_t count) {
         return count == 1 ? std::string("0")

@@ -7,10 +7,10 @@
 
 namespace hshfit::inline filtered_maps::inline exports {
 
-/// The lobe of a map's model in closed form: Mustache templates of the statements of functions, in
-/// the words of gpu/shader_data.h, those of `words` and `flags`. Directions are in the frame of a
-/// facet, in the axes of D, and above its horizon. All take `node`, of which x and y are the widths
-/// of D there, and z and w the parameters of the map's nodes.
+/// The lobe of a map's model in closed form: Mustache templates of the statements of functions.
+/// Their words are in gpu/shader_data.h and in `words` and `flags`. Directions are in the frame of
+/// a facet, in the axes of D, and above its horizon. All take `node`, of which x and y are the
+/// widths of D there, and z and w the parameters of the map's nodes.
 struct LobeText {
     using Words = std::vector<std::pair<std::string, std::string>>;
 

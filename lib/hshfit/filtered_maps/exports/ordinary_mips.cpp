@@ -47,7 +47,8 @@ double roughnessError(const BlockTexel& found, const BlockTexel& wanted) {
     return std::abs(static_cast<double>(found[1] - wanted[1]));
 }
 
-/// Of the strength, or of the direction's part across the right one times the strength.
+/// The error of the strength, or the strength times the sine of the angle between the directions if
+/// that is larger.
 double anisotropyError(const BlockTexel& found, const BlockTexel& wanted) {
     const double x = 2 * static_cast<double>(found[0]) - 1,
                  y = 2 * static_cast<double>(found[1]) - 1,

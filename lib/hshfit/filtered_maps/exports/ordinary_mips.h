@@ -12,9 +12,9 @@ namespace hshfit::inline filtered_maps::inline exports {
 
 /// A filtered texel in the parameters of an engine's own GGX material, glTF 2.0 with
 /// KHR_materials_anisotropy: the mean normal, and the widths alpha of an ellipse, the longer one
-/// along `direction` in the plane of the surface. Their squares are those of the lobe and twice the
-/// variance of the normals' slopes, as Beckmann's alpha has it (Olano & Baker 2010, "LEAN
-/// mapping").
+/// along `direction` in the plane of the surface. The square of each width is the lobe's squared
+/// width plus twice the variance of the normals' slopes, as for Beckmann's alpha (Olano & Baker
+/// 2010, "LEAN mapping").
 struct OrdinaryTexel {
     Direction normal = {0, 0, 1};
     std::array<double, 2> direction = {1, 0};
@@ -22,14 +22,15 @@ struct OrdinaryTexel {
 
     /// Perceptual: the root of the shorter width.
     double roughness() const;
-    /// Of the anisotropy: longer = shorter + (1 - shorter) strength^2.
+    /// Strength of the anisotropy: longer = shorter + (1 - shorter) strength^2.
     double strength() const;
 };
-/// `numbers` are those of MipLayout, with moments.
+/// `numbers` are laid out as MipLayout says, with moments.
 OrdinaryTexel ordinaryTexel(std::span<const double> numbers);
 
-/// A written file, with the errors of its compression over all levels: of normals in radians, of
-/// roughness, of the strength or the strength times the sine of the direction's angle.
+/// A written file, with the errors of its compression over all levels: for normals the angle in
+/// radians, for roughness the difference, for anisotropy the larger of the strength's error and the
+/// strength times the sine of the direction's error.
 struct OrdinaryMips {
     std::string role, path;
     std::size_t bytes = 0;

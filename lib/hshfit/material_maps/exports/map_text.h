@@ -32,7 +32,7 @@ MapWords setMapTextures(gpu::Language language, const MapTextures& textures,
                         kainjow::mustache::data& page);
 
 /// Sets the partial "mapFunctions": PREFIX_evalRaw, whose body is the partial "mapEval",
-/// PREFIX_eval, PREFIX_level, and with the key "shade" those of light.
+/// PREFIX_eval, PREFIX_level, and, with the key "shade", the functions for light.
 void setMapFunctions(kainjow::mustache::data& page);
 
 /// The texel of the map at column px and row py of `level` without a filter, in the layer that an

@@ -22,7 +22,7 @@ public:
     AsyncWrites(const AsyncWrites&) = delete;
     AsyncWrites& operator=(const AsyncWrites&) = delete;
 
-    /// Returns when all are done: the bytes written of each, 0 for those that failed or where the
+    /// Returns when all are done: the bytes written of each, 0 for writes that failed or where the
     /// system has no such writes. The caller writes the rest.
     std::vector<std::size_t> write(int descriptor, std::span<const FilePiece> pieces);
 

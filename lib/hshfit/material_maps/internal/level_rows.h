@@ -7,8 +7,9 @@
 
 namespace hshfit::inline material_maps {
 
-/// Rows of level 0 of a tile, one after another, and those of the levels of their means, each as
-/// soon as it is known: two rows of each level are kept, which stay in a processor's cache.
+/// Takes the rows of level 0 of a tile one after another, and makes the rows of the further levels,
+/// which are means, each as soon as it is known. Two rows of each level are kept, which stay in a
+/// processor's cache.
 class LevelRows {
 public:
     /// `step` floats a texel.
@@ -26,7 +27,8 @@ public:
 
     /// The place of the next row of level 0.
     float* next() { return row(0, counts_[0]); }
-    /// That row is there: visit(level, row, texels) for it and for all that it completes.
+    /// The row at next() is written: calls visit(level, row, texels) for it and for every row of
+    /// means that it completes.
     template <class Visit>
     void push(const Visit& visit) {
         for (std::size_t level = 0; level < counts_.size(); ++level) {

@@ -16,7 +16,7 @@ struct LevelTexels {
 
     /// The level of the means of across x down texels, each 1 or 2.
     LevelTexels mean(std::size_t across, std::size_t down) const;
-    /// The same of the largest, step 1.
+    /// The same for the largest, step 1.
     LevelTexels largestOf(std::size_t across, std::size_t down) const;
     /// Rows more at the bottom; returns where they end in `from`.
     const float* append(const float* from, std::size_t columns, std::size_t rows);
