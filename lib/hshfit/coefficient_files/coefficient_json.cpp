@@ -110,7 +110,8 @@ private:
     std::size_t outgoing_ = 0, rows_ = 0, countInRow_ = 0, channels_ = 0, slots_ = 0;
 };
 
-/// Coefficients of a file in another form, where it holds those and nothing else.
+/// The coefficients in a file of another form, if it holds coefficients per outgoing direction and
+/// nothing else; throws InputError otherwise.
 Coefficients decodedOrRefused(std::string_view text, const std::string& file) {
     const Representation r = representationFromJson(text, file);
     if (r.kind() == Representation::Kind::outgoing && r.added.empty()) return decoded(r);

@@ -80,7 +80,7 @@ std::vector<double> readWavelengths(const Fields& root) {
     return nm;
 }
 
-/// Letters and digits alone, as the names become those of channels of pictures.
+/// Letters and digits alone, because the names become names of picture channels.
 std::vector<std::string> readQuantities(const Fields& root) {
     std::vector<std::string> quantities = root.words("quantities");
     const auto isName = [](const std::string& word) {

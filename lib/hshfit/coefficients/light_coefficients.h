@@ -41,8 +41,8 @@ struct LightCoefficients {
     /// Integral of L^2 over the domain, in the inner product of the basis, summed over channels.
     /// Not finite for lights that are points.
     Energy energy = {};
-    /// Estimated error of the coefficients: root of the sum of its squares, over that of the
-    /// coefficients' squares.
+    /// Estimated relative error: the norm of the error of all coefficients over the norm of the
+    /// coefficients (roots of sums of squares).
     double error = 0;
     std::vector<LightCurve> curves = {};
 

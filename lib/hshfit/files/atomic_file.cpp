@@ -26,7 +26,7 @@ std::string folderOf(const std::string& path) {
     return slash == 0 ? "/" : path.substr(0, slash);
 }
 
-/// Where a chain of symbolic links ends, whether or not something stands there; the path itself
+/// The end of a chain of symbolic links, whether or not something stands there; the path itself
 /// where the chain goes on for ever.
 std::string endOfLinks(const std::string& path) {
     std::error_code error;

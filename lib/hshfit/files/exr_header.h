@@ -58,7 +58,7 @@ std::optional<std::array<std::size_t, 2>> exrSize(std::string_view bytes);
 /// Width and height of its display window, wherever that starts.
 std::optional<std::array<std::size_t, 2>> exrDisplaySize(std::string_view bytes);
 
-/// Whether its data window is that of width x height pixels from (0, 0).
+/// Whether its data window has width x height pixels and starts at (0, 0).
 bool exrSaysSize(std::string_view bytes, std::int32_t width, std::int32_t height);
 
 }  // namespace hshfit::inline files

@@ -15,7 +15,7 @@ struct ExrPicture {
     std::size_t width = 0, height = 0;
     std::vector<std::string> channels = {};
     std::vector<float> values = {};  ///< [row][column][channel], row 0 at the top
-    std::map<std::string, std::string> attributes = {};  ///< those of type string
+    std::map<std::string, std::string> attributes = {};  ///< the attributes of type string
 
     float& at(std::size_t row, std::size_t column, std::size_t channel) {
         return values[(row * width + column) * channels.size() + channel];

@@ -16,8 +16,8 @@ namespace hshfit::inline files {
 /// Files that appear together or not at all, most of them in one folder.
 ///
 /// Each is an AtomicFile; commit() first completes all of them, where a full disk shows, and then
-/// renames them. Should a rename fail, those before it are taken back: new files are removed, and
-/// earlier files return from hard links made beforehand (where the file system has them). The
+/// renames them. Should a rename fail, the renames before it are taken back: new files are removed,
+/// and earlier files return from hard links made beforehand (where the file system has them). The
 /// signals of removeTemporariesOnSignals wait until all are renamed; a SIGKILL between two renames
 /// leaves the set incomplete, but none of its files.
 ///
@@ -27,9 +27,9 @@ class FileSet {
 public:
     enum class Above { make, require };
 
-    /// Makes the folder, and those above it unless they are required to stand, if absent; they go
-    /// again if nothing is committed. Without `force`, a file that stands is refused; with it, the
-    /// rule of the process decides (OutputRule).
+    /// Makes the folder if absent, and the folders above it unless they are required to stand. They
+    /// go again if nothing is committed. Without `force`, a file that stands is refused; with it,
+    /// the rule of the process decides (OutputRule).
     FileSet(std::filesystem::path folder, bool force, Above above = Above::make);
     ~FileSet();
     FileSet(const FileSet&) = delete;
@@ -46,10 +46,11 @@ public:
     const AtomicFile& write(const std::string& name, std::string_view text);
     /// The same with a function that writes it. Where it throws, the set is without that file.
     const AtomicFile& write(const std::string& name, const std::function<void(AtomicFile&)>& fill);
-    /// The same of one of very many, which the others name, but which states no key itself.
+    /// The same for one of very many files: the other files name it, but it states no key itself.
     void writePart(const std::string& name, std::string_view text);
-    /// The statements of the set then hold no sum of this file, if it has it: its bytes differ from
-    /// run to run, as times do, and those of the files that state it shall not.
+    /// Leaves the checksum of this file, if the set has it, out of the statements of the set. For a
+    /// file whose bytes differ from run to run, as times do: files that state its checksum would
+    /// differ too.
     void leaveUnchecked(const std::string& name);
     /// commit() then also removes what stands in the folder from the set that this one replaces:
     /// files that the statement of a replaced file names and that this set does not have.

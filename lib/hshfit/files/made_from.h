@@ -19,7 +19,7 @@ struct MadeFrom {
     /// SHA-256 of the bytes that the statement leaves where they are: before it, in OpenEXR the
     /// pixels. Computed when the statement is added.
     std::string content = {};
-    bool changed = false;  ///< read back: `content` is no longer that of the file
+    bool changed = false;  ///< read back: the file no longer has the sum `content`
 };
 
 /// SHA-256 of a file's bytes; of a file of more than 16 MiB, of its size and of 16 pieces of a MiB

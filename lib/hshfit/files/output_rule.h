@@ -9,8 +9,8 @@ namespace hshfit::inline files {
 /// Like the mask of permissions (umask) it belongs to the process: a program states it once, before
 /// its work.
 struct OutputRule {
-    /// Other bytes than those that would be written are replaced; false: they are refused with
-    /// OutputError, and equal bytes are kept. The default is that of a library.
+    /// Whether an existing file is replaced. False: it is kept if it has the bytes that would be
+    /// written, else refused with OutputError. The default suits use as a library.
     bool replace = true;
     std::string command = {};  ///< that writes
     /// Options and version, without the inputs; empty: files say nothing.

@@ -8,10 +8,10 @@ namespace hshfit::inline files {
 
 /// `text`, which may quote a file or the name of one, as a terminal, a page or a figure can show
 /// it: one line of valid UTF-8. Each control character (C0, DEL, C1, line and paragraph separators,
-/// those that turn the direction of writing) and each byte that is no UTF-8 becomes '?'.
+/// characters that turn the direction of writing) and each byte that is no UTF-8 becomes '?'.
 std::string printable(std::string_view text);
 
-/// The same of a text of several lines: line feeds and tabs stay.
+/// The same for a text of several lines: line feeds and tabs stay.
 std::string printableLines(std::string_view text);
 
 /// JSON whose strings have those control characters as escapes.

@@ -13,9 +13,9 @@ namespace hshfit::inline files {
 class AtomicFile;
 
 /// Bytes that a computation puts aside, more than memory should hold: the last of them are in
-/// memory, at most `inMemory`, and those before on a disk. The file has no name: it goes with this
-/// object, and with the process however that ends. Where nothing exceeds `inMemory`, no file is
-/// made.
+/// memory, at most `inMemory`, and the bytes before on a disk. The file has no name: it goes with
+/// this object, and with the process however that ends. Where nothing exceeds `inMemory`, no file
+/// is made.
 ///
 /// Throws OutputError, with the folder and the system's reason, where the disk does not take the
 /// bytes, and where it does not give them back.
@@ -52,9 +52,10 @@ private:
     int descriptor_ = -1;
 };
 
-/// The folder for scratch files of a computation that writes `output`: the one that the environment
-/// variable TMPDIR names; without it that of the output, whose disk has to hold the result anyway;
-/// the system's for temporary files where the output is a device or the standard output.
+/// The folder for scratch files of a computation that writes `output`. It is the folder that the
+/// environment variable TMPDIR names; without TMPDIR the folder of the output, whose disk has to
+/// hold the result anyway, or the system's folder for temporary files if the output is a device or
+/// the standard output.
 std::string scratchFolder(const std::string& output);
 
 }  // namespace hshfit::inline files

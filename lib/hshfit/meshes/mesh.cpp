@@ -54,7 +54,7 @@ Corner cornerOf(const Mesh& mesh, std::size_t at) {
     return {faceNormal(mesh, at / 3), std::atan2(std::sqrt(dot(across, across)), dot(a, b))};
 }
 
-/// The corners at each vertex: of vertex v those from first[v] to first[v + 1].
+/// The corners at each vertex: vertex v has corners[first[v]] up to corners[first[v + 1]].
 struct CornersOfVertices {
     explicit CornersOfVertices(const Mesh& mesh) : first(mesh.positions.size() + 1) {
         for (const auto& triangle : mesh.triangles) {

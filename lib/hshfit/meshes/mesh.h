@@ -29,9 +29,9 @@ struct Mesh {
 constexpr double creaseAngle = 60 * (pi / 180);
 
 /// Fills in every normal of length 0, and all if there are none, and makes the others unit vectors.
-/// A computed normal is the mean of those of the triangles at the vertex, weighted with their
-/// angles there (Thürmer and Wüthrich 1998), of triangles within `creaseAngle` of its own. Beyond
-/// 256 triangles a vertex has one normal for all of them.
+/// A computed normal is the mean of the normals of triangles at the vertex, weighted with the
+/// triangles' angles there (Thürmer and Wüthrich 1998). Only triangles within `creaseAngle` of the
+/// corner's own triangle count. Beyond 256 triangles a vertex has one normal for all of them.
 void completeNormals(Mesh& mesh);
 
 /// Drops triangles without area, and returns their number.

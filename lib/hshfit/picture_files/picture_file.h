@@ -56,8 +56,8 @@ public:
     /// where there is no such channel.
     int find(std::string_view channel) const;
 
-    /// Rows to read at a time: those of a row of tiles, else as many as fit into 16 MiB for
-    /// `channels` channels, at most 256.
+    /// Rows to read at a time: the height of a tile, else as many as fit into 16 MiB for `channels`
+    /// channels, at most 256.
     std::size_t blockRows(std::size_t channels) const;
     /// Rows [top, bottom) of channels [first, last): out[row][column][channel], values as stored.
     /// `top` and `bottom` lie on multiples of `blockRows` or at the end of the picture.

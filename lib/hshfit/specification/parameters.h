@@ -82,7 +82,8 @@ public:
 Parameters parseParameters(std::string_view owner, std::span<const Parameter> declared,
                            std::string_view text);
 
-/// The two halves of it: what the text states, and that with defaults and the canonical text.
+/// The two halves of parseParameters: `readParameters` gives what the text states, and `completed`
+/// adds defaults and the canonical text.
 Parameters readParameters(std::string_view owner, std::span<const Parameter> declared,
                           std::string_view text);
 Parameters completed(std::string_view owner, std::span<const Parameter> declared,

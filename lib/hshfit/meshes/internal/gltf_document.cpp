@@ -54,7 +54,7 @@ Parts partsOf(std::string_view bytes, const std::string& path) {
             bytes.substr(headBytes + jsonLength, length - headBytes - jsonLength)};
 }
 
-/// Extensions that a file may require: those that leave the places of vertices as they are, and
+/// Extensions that a file may require: the ones that leave the places of vertices as they are, and
 /// integers for vertices, which accessors tell by themselves.
 bool isReadWith(std::string_view extension) {
     return extension == "KHR_mesh_quantization" || extension.starts_with("KHR_materials_") ||

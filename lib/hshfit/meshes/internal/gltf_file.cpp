@@ -215,7 +215,7 @@ private:
                 add(static_cast<int>(k), identity);
     }
 
-    /// A node and those below it, without recursion: a chain may be long.
+    /// A node and the nodes below it, without recursion: a chain may be long.
     void visit(int root) {
         std::vector<std::pair<int, Matrix>> waiting{{root, identity}};
         while (!waiting.empty()) {

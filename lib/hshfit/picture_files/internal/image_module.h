@@ -36,7 +36,8 @@ inline constexpr const char* imageModuleFunction = "hshfitOpenImage";
 using ImageModuleFunction = ImageModulePicture*(const char* plugin, const char* path, int part,
                                                 std::string& error);
 
-/// That function. Throws InputError where the module, a file beside the program, is missing.
+/// The function imageModuleFunction of the module. Throws InputError where the module, a file
+/// beside the program, is missing.
 ImageModuleFunction& imageModule();
 
 }  // namespace hshfit::inline picture_files
