@@ -18,12 +18,12 @@ struct Health {
     /// The share of the uniform pairs at which f rests on measured samples, to about half a per
     /// cent of all pairs; 1 for a model.
     double coverage = 1;
-    /// Among the values (one per channel and pair).
+    /// Counts of values, of which there is one per channel and pair.
     std::uint64_t values = 0, negative = 0, notFinite = 0;
 
-    /// Sum of |f(wi, wo) - f(wo, wi)| c over that of (|f(wi, wo)| + |f(wo, wi)|) c with
-    /// c = cos(theta_i) cos(theta_o), over the pairs that are covered both ways and all channels:
-    /// 0 if reciprocal, 1 if one of the two is always 0.
+    /// Sum of |f(wi, wo) - f(wo, wi)| c over the sum of (|f(wi, wo)| + |f(wo, wi)|) c, where c =
+    /// cos(theta_i) cos(theta_o), for all channels and the pairs that are covered both ways: 0 if
+    /// reciprocal, 1 if one of f(wi, wo) and f(wo, wi) is always 0.
     double reciprocityDefect = 0;
     /// The covered pair with the largest difference, times c, in a channel.
     struct Exchange {

@@ -24,7 +24,7 @@ struct Entry {
     std::string_view source;  ///< where the definition was published
     int maxOrder;             ///< 2801; less for a finite set or a costly solve
     bool orthonormal;         ///< in the inner product that the basis names
-    bool nested;              ///< coefficients of order n are the first of those of order n + 1
+    bool nested;              ///< the coefficients of order n + 1 begin with the ones of order n
     Style style;
     std::unique_ptr<Basis> (*make)(int order, BasisOptions options);
     /// Theta parts of order n are polynomials in mu of degrees below this times n, times roots.

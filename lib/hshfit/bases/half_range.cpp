@@ -8,8 +8,8 @@ namespace hshfit::bases {
 
 namespace {
 
-/// Turns the Jacobi matrix J of a weight w into that of (1 + sign mu) w: with L L^T = I + sign J,
-/// the new one is sign (L^T L - I) less its last row.
+/// Turns the Jacobi matrix J of a weight w into the Jacobi matrix of the weight (1 + sign mu) w:
+/// with L L^T = I + sign J it is sign (L^T L - I) without the last row and column.
 void multiplyWeight(double sign, HalfRangeRecurrence& q) {
     const std::size_t n = q.diagonal.size();
     double pivot = 1 + sign * q.diagonal[0];  // L_kk^2

@@ -26,7 +26,7 @@ public:
         Channels channels;
         Laws laws;
         std::vector<std::vector<double>> weights;  ///< [channel][channel of the BRDF]
-        std::vector<Fact> facts = {};              ///< beside those of the BRDF
+        std::vector<Fact> facts = {};              ///< in addition to the facts of the BRDF
     };
     ChannelView(std::shared_ptr<const Brdf> seen, Look look)
         : seen_(std::move(seen)), look_(std::move(look)) {}

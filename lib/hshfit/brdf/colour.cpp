@@ -130,7 +130,7 @@ std::unique_ptr<Brdf> asRgb(std::unique_ptr<Brdf> spectral) {
                            .channels = Channels::rgb(),
                            .laws = spectral->laws(),
                            .weights = {rgb.weights.begin(), rgb.weights.end()}};
-    // Weights of both signs: neither law follows from those of the wavelengths.
+    // Weights have both signs: neither law follows from the same law for the wavelengths.
     look.laws.nonNegative = look.laws.energyConserving = false;
     look.facts.emplace_back("rgb_from", fmt::format("{} wavelengths, CIE 1931 2 degrees, D65",
                                                     spectral->channels().count()));

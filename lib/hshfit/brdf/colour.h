@@ -41,8 +41,8 @@ std::array<double, 3> tristimulusOfRadiance(std::span<const double> nanometres,
 /// 0.3290). Components of colours beyond the gamut are negative.
 std::array<double, 3> rec709FromXyz(const std::array<double, 3>& xyz);
 
-/// A spectral BRDF seen as RGB: `rgbWeights` applied to every value. Its name is "rgb:" and that of
-/// the spectral one.
+/// A spectral BRDF seen as RGB: `rgbWeights` applied to every value. Its name is "rgb:" and the
+/// name of the spectral BRDF.
 /// Throws UsageError if the BRDF is not spectral, and as rgbWeights does.
 std::unique_ptr<Brdf> asRgb(std::unique_ptr<Brdf> spectral);
 

@@ -12,7 +12,7 @@ namespace hshfit::inline brdf {
 /// Quadrature that did not know the steps could miss a whole cell at several levels in a row.
 class HasSteps {
 public:
-    /// Kinks over wo for one wi, as Brdf::kinks and HasKinkCurves::kinkCurves have those over wi
+    /// Kinks over wo for one wi; Brdf::kinks and HasKinkCurves::kinkCurves have the kinks over wi
     /// for one wo.
     virtual std::vector<double> outgoingKinks(const Direction& wi) const = 0;
     virtual std::vector<KinkCurve> outgoingKinkCurves(const Direction& wi) const = 0;
@@ -21,8 +21,8 @@ public:
     /// of 2^n by 2^n on the square of `directionFromSquare`. 0: kinks and curves name all steps.
     virtual int squareLevels() const = 0;
 
-    /// Cells of wi within which f is the same for every wo, and whose borders are also those of the
-    /// cells of wo; 0 where such cells are not known.
+    /// The number of cells of wi: for every wo, f is constant within a cell. The cells of wo have
+    /// the same borders. 0 where such cells are not known.
     virtual std::size_t cells() const { return 0; }
     virtual std::size_t cellOf(const Direction&) const { return 0; }
     virtual Direction cellCentre(std::size_t) const { return {0, 0, 1}; }
@@ -48,8 +48,8 @@ struct SquarePoint {
 /// areas of the square are equal projected solid angles, cos(theta) d omega = pi du dv.
 Direction directionFromSquare(const SquarePoint& point);
 
-/// g(wi, wo) = f(wo, wi): integrals over wi for a wo become those over wo for a wi. It refers to
-/// `brdf`, which has to outlive it.
+/// g(wi, wo) = f(wo, wi): integrals over wi for a wo become integrals over wo for a wi. It refers
+/// to `brdf`, which has to outlive it.
 class Exchanged final : public Brdf, public HasKinkCurves, public HasSteps {
 public:
     explicit Exchanged(const Brdf& brdf) : brdf_(brdf) {}

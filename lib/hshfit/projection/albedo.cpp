@@ -15,8 +15,8 @@
 namespace hshfit::inline projection {
 namespace {
 
-/// One level: the integral in each channel, and the root of that of (f cos)^2, which bounds the
-/// rounding of integrals that cancel.
+/// One level: the integral in each channel, and the root of the integral of (f cos)^2, which bounds
+/// the rounding of integrals that cancel.
 struct Level {
     std::vector<double> values;
     double norm = 0;

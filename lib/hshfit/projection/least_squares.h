@@ -45,7 +45,7 @@ struct LeastSquaresProjection {
 /// In `coefficients.leastSquares`: the largest condition number of the systems, before they are
 /// regularised (singular values of R), and the relative residual |q - B c| / |q| over all. Where a
 /// condition number is beyond 1/error of the data, coefficients are noise: regularise, or lower
-/// the order. `energy` is that of the fit, its `error` the residual's share.
+/// the order. `energy` is the energy of the fit, and energy.error the residual's share of it.
 ///
 /// Throws NumericError where a direction has fewer samples than coefficients, naming both, or where
 /// a system without regularisation has no full rank. UsageError: elevations for anisotropic data.

@@ -19,7 +19,7 @@ inline Projection project(const Brdf& brdf, const Basis& basis, const OutgoingSe
 
 /// The accuracy of a projection (Gautron et al. 2004, Eq. 15): the share of the energy of q that
 /// the basis captures, without unit,
-///     sum over wo of the energy of sum_{l,m} c_{l,m}(wo) B_{l,m} / sum over wo of that of q,
+///     sum over wo of the energy of sum_{l,m} c_{l,m}(wo) B_{l,m} / sum over wo of the energy of q,
 /// energies in the inner product of the basis, over all channels, times the solid angles of wo.
 /// 1 - accuracy is the square of the relative error in that norm. At most 1, but for the error
 /// of the quadrature (Coefficients::error).

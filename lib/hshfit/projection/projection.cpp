@@ -67,7 +67,7 @@ std::vector<Group> groupBySymmetry(const OutgoingSet& outgoing, const Laws& laws
     return groups;
 }
 
-/// Coefficients of a member from those of its group's representative.
+/// Coefficients of a member from the coefficients of its group's representative.
 void applySymmetry(const Member& member, int order, const double* from, double* to) {
     double c = 1, s = 0;  // of m times the angle
     for (int m = 0; m < order; ++m) {

@@ -20,7 +20,7 @@ AzimuthPeaks::AzimuthPeaks(const std::vector<Lobe>& lobes, const Direction& wo, 
         const double mu = u * u, s = std::sqrt((1 - mu) * (1 + mu));
         addLobe(lobe, wo, s, mu);
     };
-    // A lobe is narrowest on its own ring: those of other lobes tell nothing more about it.
+    // A lobe is narrowest on its own ring: the rings of other lobes tell nothing more about it.
     for (const double end : {a, b})
         for (const Lobe& lobe : lobes) visit(lobe, end);
     for (const Lobe& lobe : lobes) {

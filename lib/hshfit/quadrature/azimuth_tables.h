@@ -9,7 +9,7 @@
 
 namespace hshfit::inline quadrature {
 
-/// Columns come in whole groups of this many; those that are missing are filled with zeros.
+/// Columns come in whole groups of this many; columns that are missing are filled with zeros.
 constexpr std::size_t laneGroup = 4;
 
 /// The number of columns of each kind of azimuth function, rounded up to whole groups of `group`.

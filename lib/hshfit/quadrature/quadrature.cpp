@@ -102,7 +102,8 @@ std::vector<Complex> singularities(const std::vector<Lobe>& lobes, const Directi
     return points;
 }
 
-/// The ellipse of a half lies within that of the whole: only points within are passed on.
+/// The ellipse of a half panel lies within the ellipse of the whole: only points within are passed
+/// on.
 void splitPanels(double a, double b, const std::vector<Complex>& points, int depth,
                  std::vector<double>& breaks) {
     constexpr int maxDepth = 40;

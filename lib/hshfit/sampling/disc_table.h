@@ -24,7 +24,7 @@ struct DiscTableOptions {
 ///
 /// The content of a cell is the mean of |f| over three outgoing elevations of the bin. Lobes that
 /// are not at the mirror direction are resolved to the cells there, 1/12 of the distance or less,
-/// and to the width of a bin. Time is that of some 0.7 million values of f per azimuth bin.
+/// and to the width of a bin. It takes the time of some 0.7 million values of f per azimuth bin.
 std::shared_ptr<const Sampler> tabulate(const Brdf& brdf, const DiscTableOptions& options = {});
 
 }  // namespace hshfit::inline sampling

@@ -27,7 +27,7 @@ double proposalWidth(std::uint8_t code);
 /// the shares, 8/255 or more:
 ///     pdf = (1 - share_0 - share_1) cos / pi + sum_k share_k ggx_k(wo, wi)
 /// Shares and widths are interpolated between rows, so that the density is continuous in wo and
-/// is that of the samples everywhere. Eight bytes per row.
+/// equals the density of the samples everywhere. Eight bytes per row.
 struct Proposal {
     using Row = std::array<ProposalLobe, 2>;
     /// By outgoing elevation. Only the second lobe may be a retro one, and then is in all rows.

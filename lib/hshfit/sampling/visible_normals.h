@@ -41,7 +41,7 @@ public:
 /// G1 of V-shaped grooves, min(1, 2 h.z cos(theta_o) / (h.wo)), and any D that is unchanged by h ->
 /// (-h.x, -h.y, h.z): h is drawn from D h.z, and exchanged for its groove's other side in
 /// proportion to the visible areas (Heitz & d'Eon 2014, 10.1111/cgf.12417, section 4.2).
-/// Exact for models with such masking; for those without masking the weight stays near its bound.
+/// Exact for models with such masking; for models without masking the weight stays near its bound.
 std::shared_ptr<const Sampler> grooveSampler(std::shared_ptr<const NormalDistribution> normals);
 
 /// exp(-(tx/ax)^2 - (ty/ay)^2) / (pi ax ay h.z^4), tx, ty: slopes of h. Ward's and Beckmann's.

@@ -158,7 +158,7 @@ private:
     T* out[directions];
 };
 
-/// The directions of a batch in chunks, those of a chunk sorted into teams.
+/// Splits the directions of a batch into chunks and sorts each chunk into teams.
 template <class T>
 class Tabulation {
 public:
@@ -312,7 +312,8 @@ private:
         }
     }
 
-    /// The azimuths of columns m .. m + n - 1 as those for rows of even and of odd l.
+    /// Splits the azimuths of columns m .. m + n - 1 into the ones for rows of even l and for rows
+    /// of odd l.
     static HWY_INLINE void separate(T* azimuths, std::size_t m) {
         for (T* array : {azimuths, azimuths + n})
             for (std::size_t i = 0; i < n; ++i) {

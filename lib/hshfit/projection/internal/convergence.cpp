@@ -22,7 +22,7 @@ double withoutAccident(const Changes& changes) {
 }
 
 /// The factor by which the next change is expected to be below the last one; 1 where changes do not
-/// shrink as those of a smooth f do. Errors are about exp(-c 1.4^k) at level k: their ratios go
+/// shrink as they do for a smooth f. Errors are about exp(-c 1.4^k) at level k: their ratios go
 /// down with every level, and an error is the last change to the power of 1.4. The larger of the
 /// two counts, since either may be an accident. Factors from trials over the catalog
 /// (docs/results/stability.md).

@@ -41,8 +41,8 @@ struct PanelError {
 PanelError panelError(const Changes& changes, bool mayBeSmooth);
 
 /// The error of a panel that has shown one or two changes and is asked for a loose tolerance: three
-/// times a change that is the only one, and that of algebraic convergence for two. Those of a
-/// smooth f overstate it by far, which leaves room for accidents.
+/// times a change that is the only one, and the error of algebraic convergence for two. For a
+/// smooth f this overstates the error by far, which leaves room for accidents.
 PanelError earlyError(const Changes& changes);
 
 }  // namespace hshfit::inline projection

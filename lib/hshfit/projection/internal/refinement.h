@@ -51,8 +51,8 @@ struct ProjectionTables {
 /// (convergence.h). At tolerances of 1e-4 and more, panels begin a level below, and one change is
 /// enough where three times it is within the tolerance; no error but 0 is then stated below a
 /// hundredth of the tolerance, and none ever below 1e-12, the accuracy of values.
-/// Of an interpolated table, one change is enough, the last is held to the tolerance, and the error
-/// stated is larger: in trials 3 times the tolerance (docs/results/stability.md).
+/// For an interpolated table one change is enough, the last change is held to the tolerance, and
+/// the error stated is larger: in trials 3 times the tolerance (docs/results/stability.md).
 ///
 /// Throws NumericError where the moments do not exist, do not converge within the evaluations
 /// allowed, or q is not finite.

@@ -274,7 +274,7 @@ private:
         if (run.halves() && tables_.order() > 1) turn(run);
     }
 
-    /// From azimuths about the panel's centre to those about the x axis.
+    /// Turns coefficients from azimuths about the panel's centre to azimuths about the x axis.
     void turn(const Run& run) const {
         const double x = run.panel->azimuths.centreX, y = run.panel->azimuths.centreY;
         const AzimuthColumns& columns = result_.columns;

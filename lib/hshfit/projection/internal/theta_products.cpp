@@ -32,7 +32,7 @@ struct KeyHash {
     }
 };
 
-/// Panels from halving have such ends; those at kinks hardly ever recur.
+/// Panels from halving have such ends; panels at kinks hardly ever recur.
 bool isDyadic(double u) {
     constexpr double finest = 1 << 24;
     return u * finest == std::floor(u * finest);
