@@ -21,8 +21,8 @@ namespace hshfit::choice {
 struct Made {
     std::unique_ptr<Brdf> brdf;  ///< null: the source itself
     std::string spec;            ///< of the BRDF, or of a coefficient file the options
-    /// The numbers that a renderer holds: those of a coefficient file with scales and masks, four
-    /// for each parameter of a formula, the whole of a measured file.
+    /// The bytes that a renderer holds: the numbers, scales and masks of a coefficient file, four
+    /// bytes for each parameter of a formula, the whole of a measured file.
     std::size_t bytes = 0;
     std::vector<std::string> commands = {};  ///< that write it, in this order; none: no file
     std::function<void(FileSet&)> write = {};
@@ -92,7 +92,7 @@ private:
     std::optional<PairReference> pairs_;
 };
 
-/// The rows of candidates, and those that could not be had.
+/// The rows of candidates, and the candidates that could not be had.
 struct MeasuredRows {
     std::vector<Row> rows;  ///< by rising bytes
     std::vector<LeftOut> leftOut;

@@ -14,7 +14,7 @@
 namespace hshfit::stability {
 namespace {
 
-/// Errors below this, relative, are those of basis functions and of models' values.
+/// Relative errors below this come from basis functions and from models' values.
 constexpr double rounding = 1e-12;
 
 Projection projectTrial(const ErrorTrial& trial, double tolerance, std::size_t maxEvaluations) {

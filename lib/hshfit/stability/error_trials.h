@@ -72,10 +72,10 @@ struct ErrorTrialSummary {
     std::size_t trials = 0, measured = 0, coefficientsHold = 0, energyMeasured = 0, energyHolds = 0;
     std::size_t bothHold = 0;
     double worst = 0;                ///< true by stated error, the largest
-    double medianOverstatement = 0;  ///< of those whose error is more than rounding
+    double medianOverstatement = 0;  ///< of trials whose error is more than rounding
     double medianEvaluations = 0;
     std::size_t evaluations = 0;
-    std::vector<ErrorTrialResult> exceptions = {};  ///< those in which not both hold
+    std::vector<ErrorTrialResult> exceptions = {};  ///< trials in which not both hold
 };
 
 /// One for each group, in the order of their first trials, and the last one of all.

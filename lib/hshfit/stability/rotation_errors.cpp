@@ -44,7 +44,7 @@ double floatError(const std::vector<double>& matrix, std::size_t rows, const dou
     return std::sqrt(difference / norm);
 }
 
-/// All to 20, those of the tables, and some between.
+/// All degrees to 20, the degrees of the tables, and some between.
 std::vector<int> sampledDegrees(int order) {
     std::vector<int> degrees;
     for (int l = 0; l < std::min(order, 21); ++l) degrees.push_back(l);

@@ -49,8 +49,8 @@ struct StressOptions {
     std::function<void(std::size_t, std::size_t)> progress = {};
 };
 
-/// Evaluation and orthonormality of those of `bases` that have degrees, rotation, and change of
-/// basis between SH and each of them, in float and double; the
+/// In float and double: evaluation and orthonormality of the bases in `bases` that have degrees,
+/// rotation, and change of basis between SH and each of these bases. Also the
 /// Gram systems of lsosh if it is among them; the projection of every lobe of `lobes`.
 /// Results do not depend on the number of threads.
 StressReport stress(std::span<const bases::Entry* const> bases, std::span<const Brdf* const> lobes,

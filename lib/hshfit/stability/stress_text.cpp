@@ -32,7 +32,7 @@ Json degreesJson(const std::vector<DegreeErrors>& rows) {
     return list;
 }
 
-/// The degrees in tables: those that the paper's applications use, and the last.
+/// The degrees in tables: the degrees that the paper's applications use, and the last.
 std::vector<std::size_t> shownDegrees(std::size_t count) {
     std::vector<std::size_t> degrees;
     for (std::size_t l : {6U, 64U, 300U})

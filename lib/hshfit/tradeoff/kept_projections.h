@@ -18,10 +18,11 @@ inline constexpr const char* timeIsOver = "the time was over";
 
 struct KeepOptions {
     ProjectionOptions projection = {};  ///< but for the quantity, which forms state
-    /// Of a search; empty: projections are those of `represent`. Else all these bases are projected
-    /// together, which evaluates f once, to `maxOrder` bands, of matrices that are not isotropic to
-    /// eight; matrices leave out the last thousandth of the hemisphere above the horizon, where
-    /// lobes are narrowest. Cut to a lower order, they agree within the tolerance.
+    /// The bases of a search. Empty: projections are made as `represent` makes them. Else all these
+    /// bases are projected together, which evaluates f once, to `maxOrder` bands, or to eight for
+    /// matrices that are not isotropic. Matrices leave out the last thousandth of the hemisphere
+    /// above the horizon, where lobes are narrowest. Cut to a lower order, the projections agree
+    /// within the tolerance.
     std::vector<std::string> bases = {};
     int maxOrder = 0;
     /// Outlives what is made with it.
@@ -41,9 +42,9 @@ public:
     /// Takes note of the orders of these forms; no form of a higher one may follow once the
     /// projection is made.
     void expect(std::span<const Form> forms);
-    /// Projects for all these forms, those that take little time first. A projection that does not
-    /// exist or does not converge is noted as the reason why its forms fail, and so is the end of
-    /// the time. `done` is called after each.
+    /// Projects for all these forms, beginning with projections that take little time. A projection
+    /// that does not exist or does not converge is noted as the reason why its forms fail, and so
+    /// is the end of the time. `done` is called after each.
     void prepare(std::span<const Form> forms, const std::function<void()>& done,
                  const TimeLimit& limit = {});
     /// The number of projections that `prepare` would make.
@@ -61,7 +62,7 @@ public:
     Representation halfway(const Form& form) override;
     const Brdf& remainder() const override { return brdf_; }
 
-    /// Of a search: coefficients in every basis for any set of directions, of at most `order`
+    /// For a search: coefficients in every basis for any set of directions, of at most `order`
     /// bands; not kept.
     std::vector<Coefficients> allBases(const OutgoingSet& set, Quantity quantity,
                                        int order = 0) const;

@@ -291,7 +291,8 @@ void findFronts(Tradeoff& trade, const TradeoffOptions& options) {
     trade.timeKnee = kneeOf(trade.timeFront, nanoseconds, errors);
 }
 
-/// The picture errors of the forms on the fronts; those of all would take longer than the rest.
+/// Adds the picture errors of the forms on the fronts. For all forms they would take longer than
+/// the rest.
 void drawFronts(Tradeoff& trade, const Maker& maker, const PictureReference& pictures,
                 const BrdfOpener& open) {
     for (const std::size_t k : onFronts(trade)) {

@@ -143,7 +143,7 @@ struct Tradeoff {
     double formulaErrorOf(std::size_t formula) const;
     /// The error of a form of `wavelets`.
     double waveletErrorOf(std::size_t form) const;
-    /// Those that no other wavelet form beats, by rising bytes.
+    /// Indices of the `wavelets` that no other wavelet form beats, by rising bytes.
     std::vector<std::size_t> waveletFront() const;
 };
 

@@ -11,8 +11,8 @@ namespace hshfit::tradeoff {
 
 /// Writes to `folder`, made if absent, the files of a trade:
 ///     tradeoff.json, forms.csv, front.csv, tradeoff.gp, front.svg, tradeoff.html
-/// which are the same bytes whenever the same trade is measured, and, if it was timed, those that
-/// hold times:
+/// which are the same bytes whenever the same trade is measured, and, if it was timed, the files
+/// that hold times:
 ///     timing.json, timing.csv, timing_front.csv, timing.svg, timing.html
 /// and timing_gpu.csv where shaders were timed.
 /// They appear together or not at all. Throws OutputError where a file cannot be written or a
@@ -38,8 +38,8 @@ std::string timingCsv(std::span<const Tradeoff> trades);
 /// As frontCsv, by rising nanoseconds.
 std::string timingFrontCsv(std::span<const Tradeoff> trades);
 
-/// The shaders of the forms of the fronts: brdf, ns_per_million_pixels, quartiles, that of the
-/// shader without a form, error, bytes, device, software (1 or 0), options.
+/// The shaders of the forms of the fronts: brdf, ns_per_million_pixels, quartiles, the median time
+/// of the shader without a form, error, bytes, device, software (1 or 0), options.
 std::string shadersCsv(std::span<const Tradeoff> trades);
 
 /// Draws front.svg from forms.csv and front.csv, and timing.svg where there is a timing.csv.

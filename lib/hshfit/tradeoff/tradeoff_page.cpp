@@ -201,7 +201,7 @@ std::string millions(double nanoseconds) {
     return fmt::format("{:.3f}", 1e-6 * nanoseconds);
 }
 
-/// The shaders of the fronts, the fastest first; those that a form lacks last.
+/// The shaders of the fronts, the fastest first; forms without a shader come last.
 data shaderTable(const Tradeoff& trade) {
     const MeasuredShaders& shaders = *trade.shaders;
     std::vector<const MeasuredShader*> order;

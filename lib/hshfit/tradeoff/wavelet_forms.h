@@ -25,8 +25,8 @@ struct MeasuredWavelets {
 };
 
 /// For every outgoing set of the sweep that the forms per outgoing direction have, as many terms as
-/// each of its orders has slots, in single and half precision; those of more than `maxBytes` are
-/// left out. Empty where f is not finite at the centre of a leaf.
+/// each of its orders has slots, in single and half precision; terms that take more than `maxBytes`
+/// are left out. Empty where f is not finite at the centre of a leaf.
 std::vector<MeasuredWavelets> measureWavelets(const Brdf& brdf, const PairReference& reference,
                                               const Sweep& sweep, std::size_t maxBytes);
 

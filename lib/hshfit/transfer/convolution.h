@@ -17,7 +17,7 @@ namespace hshfit::inline transfer {
 // Condon-Shortley phase of f does not matter. Bases of the hemisphere have no such theorem.
 
 /// One row of the table of kernels. Multipliers are for `order` bands, l = 0 .. order - 1, relative
-/// error below 1e-12 to order 1000 where they are normal numbers; those below are 0.
+/// error below 1e-12 to order 1000 where they are normal numbers; smaller ones are 0.
 struct Kernel {
     std::string_view name;
     std::string_view help;       ///< one line, with the formula

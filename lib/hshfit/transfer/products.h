@@ -12,7 +12,7 @@ namespace hshfit::inline transfer {
 /// the coefficients of f b, cut off at the order of `basis`. Symmetric. f has the functions of
 /// `factorBasis`, the same family at any order: with 2 order - 1 bands the product with every b is
 /// exact within `basis`. Built from the azimuth parts of f on exact rings, block by block of m, as
-/// O(order^5) operations without the tensor; memory is that of the matrix.
+/// O(order^5) operations without the tensor, in the memory of the matrix.
 /// Throws UsageError for bases that are not orthonormal, of two families, or of two inner products.
 std::vector<double> transferMatrix(const Basis& basis, const Basis& factorBasis,
                                    std::span<const double> factor);

@@ -37,8 +37,8 @@ struct LeastNegative {
 /// window. For each of hann, lanczos and bending the widest window is found for which no channel
 /// is negative anywhere (Sloan 2017, "Deringing Spherical Harmonics", searches the width of one
 /// window), by bisection on the minimum over the sphere; the one that changes the coefficients
-/// least is returned, and `none` if nothing is negative. Minima are those of a grid of eight
-/// nodes a wavelength, refined. Throws NumericError if a channel's mean is negative, UsageError for
+/// least is returned, and `none` if nothing is negative. Minima are found on a grid of eight nodes
+/// a wavelength and refined. Throws NumericError if a channel's mean is negative, UsageError for
 /// coefficients that are no whole number of bands.
 LeastNegative leastNegativeWindow(std::span<const double> coefficients, int order,
                                   bool condonShortley = false);

@@ -18,8 +18,8 @@ namespace hshfit::wavelets {
 // the three wavelets of a triangle are each other's images when its outer children are relabelled.
 // (The other sign of S makes a second such basis, whose wavelets are less local.)
 
-/// The number of functions is that of the leaves. Indices: the roots' scaling functions, then level
-/// by level roots 4^j + 3 k + i - 1 for wavelet i of triangle k at level j.
+/// There are as many functions as leaves. Indices: the roots' scaling functions, then level by
+/// level roots 4^j + 3 k + i - 1 for wavelet i of triangle k at level j.
 ///
 /// Analysis of averages over the leaves, and synthesis back: O(leaves), exact but for rounding.
 /// Both arrays have `leaves()` numbers.

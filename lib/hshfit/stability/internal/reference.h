@@ -16,7 +16,7 @@ namespace hshfit::stability {
 ///     b_{k+1} p_{k+1} = (t - a_k) p_k - b_k p_{k-1}
 /// (Gautschi 2004, table 1.1), normalised by the weight's integral
 ///     2^(alpha+beta+1) Gamma(alpha+1) Gamma(beta+1) / Gamma(alpha+beta+2).
-/// The functions are those of bases/jacobi.h, evaluated independently to measure its errors.
+/// These are the functions of bases/jacobi.h, evaluated independently to measure the errors there.
 std::vector<long double> referenceTheta(const bases::JacobiFamily& family, int m, int order,
                                         const std::vector<Direction>& directions);
 
