@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t mapEdge = 90;
 
-/// The channels of the comparison: a grey BRDF takes those of the other.
+/// The channels of the comparison: a grey BRDF takes the channels of the other.
 Channels channelsOf(const Brdf& a, const Brdf& b) {
     const Channels &x = a.channels(), &y = b.channels();
     if (x.serve(y)) return y;

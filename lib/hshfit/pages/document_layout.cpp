@@ -13,7 +13,7 @@ namespace {
 using Kind = DocumentBlock::Kind;
 
 constexpr double textSize = 9, tableSize = 7.5, headingSize = 11, titleSize = 16;
-constexpr double prose = 0.92;      ///< width of prose over that of as many figures
+constexpr double prose = 0.92;      ///< width of prose over the width of as many digits
 constexpr double leading = 1.35;    ///< distance of lines, in sizes of the font
 constexpr double nameColumn = 120;  ///< points, of pairs
 constexpr double gap = 8;           ///< between columns of a table, points

@@ -40,7 +40,7 @@ std::string statementOf(const PlacedRule& rule) {
                        at(rule.left, rule.y), at(rule.right, rule.y), scriptNumber(rule.width));
 }
 
-/// The fields of a page; `figures` gets those that it shows, whose numbers go on from before.
+/// The fields of a page; `figures` gets the figures that it shows, whose numbers go on from before.
 data fieldsOf(const DocumentPage& page, const FigureStyle& style,
               std::vector<const PrintFigure*>& figures) {
     data fields, statements{data::type::list}, shown{data::type::list};

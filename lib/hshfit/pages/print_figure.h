@@ -23,7 +23,7 @@ struct PrintSeries {
         guide    ///< a thin grey line
     };
     Kind kind = Kind::line;
-    std::string label = {};  ///< in the legend; those with one label share an item; empty: none
+    std::string label = {};  ///< in the legend; series with one label share an item; empty: none
     std::size_t ink = 0;     ///< of figureInks()
     std::size_t dash = 0;    ///< of a line: solid, dashed, dotted, dash-dotted
     std::size_t marker = 0;  ///< circle, square, triangle, diamond
@@ -61,8 +61,8 @@ struct PrintFigure {
     std::vector<PrintPanel> panels = {};
 };
 
-/// The ink of a drawn channel, by its place among those drawn: of R, G and B the red, the yellow
-/// and the blue one.
+/// The ink of a drawn channel, by its place among the drawn channels: red, yellow and blue inks for
+/// R, G and B.
 std::size_t channelInk(Channels::Kind kind, std::size_t place);
 
 /// The range and ticks of an axis of f for values: `style.axis`, with 0 on a linear one. On a
@@ -75,7 +75,7 @@ PrintAxis linearAxis(double low, double high, const std::string& label, int tick
 /// The script for gnuplot, and the data of one figure: panel, its title, series, x, y, low, high.
 std::string figuresScript(const std::vector<PrintFigure>& figures, const FigureStyle& style);
 std::string figureCsv(const PrintFigure& figure);
-/// mm; that of the style, and what its panels and legend need.
+/// Width and height in mm: the style's width, and the height that panels and legend need.
 std::array<double, 2> figureSize(const PrintFigure& figure, const FigureStyle& style);
 
 /// The files of figures in a set that is yet to be committed.

@@ -106,7 +106,8 @@ ReportEntry reportEntry(std::span<const Projection> projections) {
         return bases::make(c.basis, c.order)->inner() == Basis::Inner::solidAngle;
     };
     const auto found = std::find_if(projections.begin(), projections.end(), solidAngle);
-    // Without such a basis the energy shown is that of the first, which its curve then repeats.
+    // Without such a basis the energy shown is the first projection's, which its own curve then
+    // repeats.
     const Projection& first = found != projections.end() ? *found : projections.front();
     const Coefficients& c = first.coefficients;
     ReportEntry entry{.brdf = c.source,

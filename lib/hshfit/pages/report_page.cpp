@@ -35,8 +35,8 @@ std::string accuracyText(const std::optional<double>& accuracy) {
     return fmt::format("{:.{}f} %", 100 * *accuracy, digits);
 }
 
-/// Whether the numbers of a curve's coefficients compare with those of others: the same energy, and
-/// no indices beside the values.
+/// Whether the numbers of coefficients of a curve compare with other curves': they have the same
+/// energy, and no indices beside the values.
 bool compares(const ReportCurve& curve) {
     return !curve.energy && !curve.bestTerms;
 }

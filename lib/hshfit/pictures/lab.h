@@ -7,7 +7,7 @@ namespace hshfit::inline pictures {
 /// Linear Rec. 709: R, G and B.
 using LinearRgb = std::array<double, 3>;
 
-/// CIE XYZ over that of white, R = G = B = 1 (IEC 61966-2-1, with the digits of the primaries),
+/// CIE XYZ relative to white, R = G = B = 1 (IEC 61966-2-1, with the digits of the primaries),
 /// and back.
 std::array<double, 3> relativeXyz(const LinearRgb& rgb);
 LinearRgb rgbOfRelativeXyz(std::array<double, 3> xyz);

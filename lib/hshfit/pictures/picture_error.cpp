@@ -79,8 +79,9 @@ double brightnessOf(const SpherePicture& sphere, std::size_t k) {
     return static_cast<double>(*std::max_element(rgb, rgb + 3));
 }
 
-/// Exposures of FLIP in stops, of the surface first: from that at which half of the lit pixels have
-/// their largest channel at or above `shownAsWhite` to that of the brightest one, at most four.
+/// Exposures for FLIP in stops, evenly spaced, at most four. The first shows the surface: half of
+/// the lit pixels have their largest channel at or above `shownAsWhite`. At the last the brightest
+/// pixel just reaches `shownAsWhite`.
 std::vector<double> exposuresOf(const SpherePicture& sphere, double brightest) {
     constexpr int most = 4;
     std::vector<double> lit;

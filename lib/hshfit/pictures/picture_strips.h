@@ -17,8 +17,8 @@ struct PictureStrip {
     std::array<SpherePicture, 3> spheres;  ///< the last is |difference| times `times`
 };
 
-/// Spheres of a BRDF under the lights of strips, of those of the picture error: one that shows the
-/// highlight, and one with light from all around.
+/// Spheres of a BRDF under the lights of strips, which are two of the picture error's lights: one
+/// that shows the highlight, and one with light from all around.
 std::vector<SpherePicture> stripSpheres(const Brdf& brdf);
 
 /// A strip for each light, from stripSpheres() of both.

@@ -14,7 +14,7 @@ namespace {
 
 using Rgb = std::array<double, 3>;
 
-/// The local frame at a point of the sphere, in that of the picture.
+/// The local frame at a point of the sphere, in the frame of the picture.
 struct Frame {
     Direction tangent, bitangent, normal;
     Direction local(const Direction& d) const {
@@ -140,7 +140,8 @@ Cell moved(Cell cell, std::size_t symmetry, std::size_t size) {
     return cell;
 }
 
-/// Draws pixels of a picture together with those onto which symmetries of the sphere take them.
+/// Draws pixels of a picture together with the pixels onto which symmetries of the sphere take
+/// them.
 class Painter {
 public:
     Painter(const Shader& shader, const SphereOptions& options, SpherePicture& picture)

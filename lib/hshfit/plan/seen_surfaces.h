@@ -23,7 +23,7 @@ struct SeenMaterial {
     /// their shares of the hits.
     std::vector<Orientation> orientations = {};
     std::vector<double> shares = {};
-    double spread = 0;     ///< the largest angle between a hit's normal and that of its group
+    double spread = 0;     ///< the largest angle between a hit's normal and its group's normal
     ViewRange views = {};  ///< of the middle 98 % of hits, by elevation and by azimuth
 
     double share() const {

@@ -15,8 +15,8 @@ struct FigureFrame {
     double left = 0, bottom = 0, pageWidth = 0, pageHeight = 0;
 };
 
-/// The fields of templates/figure_space.gp and figure_panels.gp; `index` is that of the variable
-/// with its CSV file, csvN.
+/// The fields of templates/figure_space.gp and figure_panels.gp; `index` is the N of csvN, the
+/// variable that names its CSV file.
 kainjow::mustache::data figureFields(const PrintFigure& figure, const FigureStyle& style,
                                      std::size_t index, const FigureFrame& frame = {});
 

@@ -66,7 +66,7 @@ private:
 /// free and turns matter.
 std::vector<Frame> framesOf(const Scene& scene, const Material& material, const Brdf& brdf);
 
-/// The outgoing radiance of a material by lattice points, at views that lie between those of
+/// The outgoing radiance of a material by lattice points, at views that lie between the views of
 /// MaterialLight.
 class LatticeCheck {
 public:
