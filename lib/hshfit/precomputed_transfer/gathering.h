@@ -62,8 +62,8 @@ struct TransferHit {
 ///     vectors   T_i = 1/pi integral of V Y_i cos(theta) d omega      (Sloan, Kautz, Snyder 2002)
 ///     matrices  M_ji = integral of V Y_i H_j d omega
 /// Without V both are in closed form: the clamped cosine's bands, and the product of the change of
-/// basis with the rotation into the frame. With V, the sum over rays is over those that meet
-/// something, taken from the closed form, or over those that do not, whichever are fewer.
+/// basis with the rotation into the frame. With V, the sum is over the rays that meet something,
+/// taken from the closed form, or over the rays that do not, whichever are fewer.
 struct GatheredTransfer {
     int order = 0, localOrder = 0;
     std::vector<float> unshadowed = {}, shadowed = {};                  ///< [vertex][slot]
@@ -72,7 +72,7 @@ struct GatheredTransfer {
     std::vector<TransferHit> hits = {};                 ///< [vertex][ray], with both
     std::uint64_t seed = 1;                             ///< of the rays' directions
     /// Vertices whose rays nearly all end inside of closed objects: they lie in one. Their transfer
-    /// is that of the vertices beside them.
+    /// is taken from the vertices beside them.
     std::vector<std::uint32_t> buried = {};
 
     std::size_t rays = 0;       ///< of all vertices

@@ -14,7 +14,7 @@ struct InterreflectionOptions {
     int passes = 5;  ///< reflections before the last one, which is the vertex's own
     TransferProgress progress = {};
     TimeLimit limit = {};  ///< no pass begins after it
-    KeptParts kept = {};   ///< passes over rays, each by its number; those over links are quick
+    KeptParts kept = {};   ///< passes over rays, each by its number; passes over links are quick
 };
 
 /// Transfer with light that came by other surfaces, the sum over passes.

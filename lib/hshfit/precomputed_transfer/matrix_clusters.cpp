@@ -37,7 +37,7 @@ Matrix centred(const Rows& all, const Members& members, const Eigen::RowVectorXd
     return some;
 }
 
-/// Orthonormal columns that span those of `a`.
+/// Orthonormal columns with the same span as the columns of `a`.
 Matrix orthonormal(const Matrix& a) {
     const Eigen::HouseholderQR<Matrix> qr(a);
     return qr.householderQ() * Matrix::Identity(a.rows(), a.cols());

@@ -236,7 +236,8 @@ void addFront(TransferMesh& all, const Mesh& mesh, std::uint32_t object) {
     }
 }
 
-/// Vertices and triangles with the other side of those of an object, `from` up to `to`.
+/// Adds vertices and triangles for the other side of an object, whose own go from `from` up to
+/// `to`.
 void addBacks(TransferMesh& all, const ObjectPlace& from, const ObjectPlace& to) {
     const auto shift = static_cast<std::uint32_t>(all.vertices.size() - from.vertex);
     for (std::size_t v = from.vertex; v < to.vertex; ++v) {

@@ -32,7 +32,7 @@ struct TransferMeshOptions {
 struct TransferVertex {
     MeshVector position{}, normal{};
     std::uint32_t object = 0;
-    double area = 0;  ///< a third of that of the triangles around it
+    double area = 0;  ///< a third of the area of the triangles around it
 };
 
 /// The surfaces of a scene as vertices and triangles with one side each. Corners of an object at

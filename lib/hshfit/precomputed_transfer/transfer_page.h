@@ -37,7 +37,8 @@ struct TransferPageInput {
     int order = 0, localOrder = 0;
     std::size_t channels = 1;  ///< of the clusters' matrices
     std::vector<PageKind> kinds = {};
-    /// The materials of the scene come first, then those that may replace them; at most 64 in all.
+    /// The materials of the scene come first, then the materials that may replace them; at most 64
+    /// in all.
     std::vector<TransferMaterial> materials = {};
     std::size_t sceneMaterials = 0;
     const MatrixClusters* clusters = nullptr;  ///< none: responses are not used

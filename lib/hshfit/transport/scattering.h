@@ -9,9 +9,9 @@ namespace hshfit::inline transport {
 // Reflection at a hit whose interpolated normal differs from its triangle's. Directions above the
 // interpolated horizon may lie below the triangle, where light cannot go. They are mirrored at the
 // triangle: a direction `world` above it stands for itself and for its mirror image, and has the
-// sum of both values of f cos(theta_i) and of both densities. The integral over directions is that
-// of the BRDF over its own hemisphere, so that no light is lost: a surface of albedo 1 reflects all
-// light, whatever its normals.
+// sum of both values of f cos(theta_i) and of both densities. The integral over directions equals
+// the integral of the BRDF over its own hemisphere, so that no light is lost: a surface of albedo 1
+// reflects all light, whatever its normals.
 
 /// `world`, or its mirror image at the triangle where it is below.
 Direction aboveTriangle(const SurfaceHit& hit, const Direction& world);

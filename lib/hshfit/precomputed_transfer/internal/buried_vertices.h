@@ -9,10 +9,10 @@
 
 namespace hshfit::inline precomputed_transfer {
 
-/// Values for vertices that lie within closed objects, as a floor's under a box: the mean of those
-/// beside them and at the same place on the same side, from the edge of the hidden region inwards,
-/// so that no darkness is interpolated out from under the box. Vertices without any way to the open
-/// keep their values.
+/// Values for vertices that lie within closed objects, as a floor's under a box: the mean of the
+/// values beside them and at the same place on the same side, from the edge of the hidden region
+/// inwards, so that no darkness is interpolated out from under the box. Vertices without any way to
+/// the open keep their values.
 class BuriedVertices {
 public:
     BuriedVertices(const TransferMesh& mesh, std::span<const std::uint32_t> buried);

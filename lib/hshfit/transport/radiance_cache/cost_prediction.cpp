@@ -60,7 +60,7 @@ std::vector<Sight> sightsOf(const RadianceCache& cache, std::span<const Camera* 
     return sights;
 }
 
-/// The n-th of `count` hits that lie evenly among those seen.
+/// The n-th of `count` hits that lie evenly among the hits seen.
 const Seen& evenly(const Sight& sight, std::size_t n, std::size_t count) {
     return sight.seen[(2 * n + 1) * sight.seen.size() / (2 * count)];
 }

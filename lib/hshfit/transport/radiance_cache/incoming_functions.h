@@ -11,8 +11,8 @@ namespace hshfit::inline transport::inline radiance_cache {
 
 /// The functions W_i on the hemisphere by which records hold incoming radiance,
 ///     lambda_i = integral of L(d) W_i(d) d omega       (Gautron et al. 2004, Eq. 21):
-/// those of a basis, times cos(theta) where its inner product has the cosine, or the cosine alone,
-/// for which lambda is irradiance. Slots of functions that a basis lacks are left out.
+/// the functions of a basis, times cos(theta) where its inner product has the cosine, or the cosine
+/// alone, for which lambda is irradiance. Slots of functions that a basis lacks are left out.
 class IncomingFunctions {
 public:
     /// Irradiance.

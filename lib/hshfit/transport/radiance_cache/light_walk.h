@@ -57,7 +57,7 @@ public:
     /// Reflected direct light alone, by a sample of the lights and one of the material.
     Rgb direct(const SurfaceHit& hit, RandomNumbers& random, std::size_t& rays) const;
     /// The light that one direction of the material's sampler finds; direct light, which is
-    /// weighted against that of `lights()`, only if `direct`.
+    /// weighted against samples of `lights()`, only if `direct`.
     Walk sampled(const SurfaceHit& start, const KnownLight& known, bool direct,
                  RandomNumbers& random, std::size_t& rays) const;
 

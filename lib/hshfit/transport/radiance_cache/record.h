@@ -28,9 +28,9 @@ struct Record {
     double radius = 0;       ///< R_i of Eq. 23
     double longRadius = 0;   ///< along longAxis, where it is larger
     Direction longAxis{1, 0, 0};
-    double distance = 0;  ///< harmonic mean of the distances met, those of misses infinite
+    double distance = 0;  ///< harmonic mean of the distances met; a miss counts as infinite
     /// [part][R, G, B][function]: coefficients, their derivatives per length along the frame's
-    /// tangent and bitangent and, for irradiance, those by turns about these two.
+    /// tangent and bitangent and, for irradiance, their derivatives by turns about these two.
     std::vector<float> values = {};
 
     static std::size_t partsOf(const IncomingFunctions& functions) {
