@@ -52,7 +52,7 @@ inline std::string asFunction(const Call& call) {
     return std::string(call.function) + "(" + arguments + ")";
 }
 
-/// The wording in use, that of the library's own interface unless `setWording` replaced it.
+/// The wording in use: the names of the library's own interface, unless `setWording` replaced them.
 inline Wording& currentWording() {
     static Wording wording{asMember, asFunction};
     return wording;

@@ -7,7 +7,7 @@
 
 namespace hshfit::linear_algebra {
 
-/// Where a search may move along one coordinate, and how far at first.
+/// The range in which a search may move along one coordinate, and the step that it begins with.
 struct SearchAxis {
     double step, low, high;
 };
