@@ -41,7 +41,7 @@ public:
     struct Result {
         PairErrors all;
         std::vector<PairErrors> bands;  ///< by elevation of wo; without values where no pair is
-        /// By PairZone, likewise; with uncertainties, without albedo.
+        /// By PairZone, without values where no pair is; with uncertainties, without albedo.
         std::vector<PairErrors> zones = {};
         /// The albedo of the reference where `all` has its largest difference, and the theta_o of
         /// that stratum.

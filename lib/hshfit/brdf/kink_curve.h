@@ -39,7 +39,7 @@ protected:
     ~HasKinkCurves() = default;
 };
 
-/// None where the BRDF does not say.
+/// The kink curves of a BRDF; none where it does not have HasKinkCurves.
 std::vector<KinkCurve> kinkCurvesOf(const Brdf& brdf, const Direction& wo);
 
 }  // namespace hshfit::inline brdf

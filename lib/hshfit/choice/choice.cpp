@@ -34,7 +34,8 @@ public:
         : left_(std::move(candidates)), bound_(bound) {}
 
     bool isEmpty() const { return left_.empty(); }
-    /// In their order, but slow fits of formulas last where quick ones are far off.
+    /// Takes the candidates in their order, but slow fits of formulas last where the best so far is
+    /// far off.
     Candidate next() {
         const bool areFar = std::isfinite(nearest_) && nearest_ > farOff * bound_;
         const auto waits = [&](const Candidate& candidate) {

@@ -23,9 +23,8 @@ namespace hshfit::inline files {
 /// another has the other's permissions, and its owner where the system allows it. The file is not
 /// synced to the disk: a power cut may lose it.
 ///
-/// Where the process has a rule that refuses (OutputRule), `replace` and `refuse` alike come down
-/// to it: a file that stands is kept if it has the same bytes, or states the same key, else
-/// refused.
+/// A rule of the process that refuses (OutputRule) holds for `replace` and `refuse` alike: a file
+/// that stands is kept if it has the same bytes, replaced if it states the same key, else refused.
 ///
 /// Every member but the destructor throws OutputError, with the path and the system's reason.
 class AtomicFile {
@@ -45,7 +44,7 @@ public:
     std::FILE* stream() { return stream_; }
     /// The name for another program to write to before commit(); `path` itself for a device.
     const std::string& temporaryPath() const { return temporary_; }
-    /// As given.
+    /// The path as it was given.
     const std::string& path() const { return path_; }
     /// The place of the file: `path` with its links resolved.
     const std::string& target() const { return target_; }
@@ -58,11 +57,11 @@ public:
     /// finish(), and the statement of the key with the `files` written beside this one and their
     /// `sums`, where there is a key and a place for it; once.
     void state(const std::vector<std::string>& files, const std::vector<std::string>& sums = {});
-    /// The same without the statement.
+    /// From now on the file has no key, so that state() only finishes it.
     void leaveUnstated() { key_.clear(); }
     /// finish(), and the rule: throws for a file that stands and is not to be replaced.
     void requirePlace();
-    /// All of these, unless they were called, and the rename.
+    /// finish(), state() and requirePlace(), unless they were called, and the rename.
     void commit();
 
 private:

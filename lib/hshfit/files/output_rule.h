@@ -10,7 +10,8 @@ namespace hshfit::inline files {
 /// its work.
 struct OutputRule {
     /// Whether an existing file is replaced. False: it is kept if it has the bytes that would be
-    /// written, else refused with OutputError. The default suits use as a library.
+    /// written, replaced if it states the same key, else refused with OutputError. The default
+    /// suits use as a library.
     bool replace = true;
     std::string command = {};  ///< that writes
     /// Options and version, without the inputs; empty: files say nothing.

@@ -26,9 +26,9 @@ struct ViewerForm {
 /// form and in one basis.
 struct ViewerInput {
     std::string title;
-    /// One or two, grey or RGB, in the order of the panes. float16 is shown unchanged; the values
-    /// that a GPU reads from other number types are rounded to float16. Basis textures are left
-    /// out.
+    /// One or two payloads, grey or RGB, in the order of the panes. float16 is shown unchanged; the
+    /// values that a GPU reads from other number types are rounded to float16. Basis textures are
+    /// left out.
     std::vector<Payload> payloads;
     std::optional<ReferenceTable> reference = {};
     std::optional<ViewerForm> form = {};  ///< shown before the payloads, of which there is one then

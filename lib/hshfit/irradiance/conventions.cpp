@@ -76,7 +76,7 @@ Rows packUnreal(const NineRgb& radiance) {
     return rows;
 }
 
-/// By channel the nine factors of the polynomial.
+/// A row for each channel with the nine factors of the polynomial.
 Rows packChannels(const NineRgb& radiance) {
     const NineRgb p = polynomial(radiance);
     Rows rows(3);
@@ -106,7 +106,7 @@ Rows packBabylon(const NineRgb& radiance) {
     return rows;
 }
 
-/// By channel (x, y, z, 1) of bands 0 and 1.
+/// A row for each channel with the factors of (x, y, z, 1) in bands 0 and 1.
 Rows packTwoBands(const NineRgb& radiance) {
     const NineRgb p = polynomial(radiance);
     Rows rows;

@@ -31,7 +31,7 @@ public:
         for (auto& channel : averages_) channel.assign(leaves_.size(), 0.0);
     }
 
-    /// In the middle of each leaf.
+    /// Adds the radiance in the middle of each leaf.
     void addRadiance(std::span<const Light> lights) {
         constexpr std::size_t block = 1024;
         tbb::parallel_for(std::size_t{0}, (leaves_.size() + block - 1) / block, [&](std::size_t b) {

@@ -73,7 +73,8 @@ struct PyramidKernel {
     const LobeKernel::Scaled& kernel;
     double core = 2;
 
-    /// By which the square of size over distance may be larger, for the square of a chord.
+    /// The factor by which the square of size over distance may be larger, for the square of a
+    /// chord.
     double growth(double squared) const { return std::clamp(squared / (core * core), 1.0, 16.0); }
 };
 

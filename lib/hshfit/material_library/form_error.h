@@ -35,7 +35,8 @@ struct Limits {
 /// limit 0.15"; empty: it is within all.
 std::string beyond(const FormError& error, const Limits& limits);
 
-/// Without FLIP. Throws NumericError where f is not finite. The channels have to be as many.
+/// The error without FLIP. f and g have to have as many channels. Throws NumericError where f is
+/// not finite.
 FormError formError(const Brdf& f, const Brdf& g, const PairSample& pairs);
 
 /// The pairs of every error of a library, which no fit uses: spreadPairs().

@@ -32,7 +32,7 @@ FormError sumOf(const FormError& a, const FormError& b) {
             a.flip + b.flip};
 }
 
-/// In the numbers that a file keeps.
+/// The material rounded to single precision, as files keep it.
 LogMaterial rounded(LogMaterial material) {
     for (double& value : material.exponents) value = static_cast<float>(value);
     for (double& value : material.tops) value = static_cast<float>(value);

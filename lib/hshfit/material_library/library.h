@@ -45,9 +45,10 @@ struct Library {
     /// Root mean square error of ln(f + logOffset) of materials that took no part, as stored; 0:
     /// there were too few to tell.
     double unseen = 0;
-    double unseenFlip = 0;  ///< the mean FLIP of these, where pictures were drawn
+    double unseenFlip = 0;  ///< the mean FLIP of these materials, where pictures were drawn
     Basis basis = {};
-    /// Another library that has the basis, and its checksum; empty: it is this one's own.
+    /// The file of another library that has the basis, and its checksum. Empty: this library has
+    /// its own basis.
     std::string basisFile = {}, basisSum = {};
     std::vector<Material> materials = {};  ///< by name
     /// The materials as learning again needs them, by name; empty: left out.

@@ -21,13 +21,13 @@ public:
     /// `folder` as of ScratchFile.
     explicit MaterialStore(const std::string& folder) : folder_(folder), file_(folder) {}
 
-    /// From any thread, before sort().
+    /// May be called from any thread, before sort().
     void add(const Measured& measured);
     /// A material with a halfway form.
     void add(const Material& own);
 
-    /// Into the order of names, once, which everything below needs. Throws UsageError for two
-    /// materials of one name.
+    /// Sorts the materials by name. To be called once, before any member below. Throws UsageError
+    /// for two materials of one name.
     void sort();
 
     /// The number of materials that learning takes. They are numbered from 0.

@@ -54,10 +54,10 @@ class PrincipalShapes {
 public:
     PrincipalShapes(const TexelLayout& layout, std::span<const float> texels, Processes& processes);
 
-    /// Up to layout.shape(), those after the numerical rank left out.
+    /// The number of shapes: at most layout.shape(), and no more than the numerical rank.
     std::size_t most() const { return most_; }
     LowRank lowRank(std::size_t rank) const;
-    /// Over the texels, for every rank up to `most()`: [rank - 1].
+    /// The errors over the texels for every rank up to `most()`: [rank - 1].
     std::vector<TexelErrors> errors(std::span<const float> texels, Processes& processes) const;
 
 private:

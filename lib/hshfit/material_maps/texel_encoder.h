@@ -32,13 +32,13 @@ public:
     virtual std::string form() const = 0;
     virtual gpu::Number number() const = 0;
     virtual std::size_t layers() const = 0;
-    /// Floats that are averaged.
+    /// The number of floats that are averaged.
     virtual std::size_t linear() const = 0;
-    /// Whether these are the texel itself, and `reduce` a copy.
+    /// Whether the averaged floats are the texel itself, and `reduce` is a copy.
     virtual bool averagesTexels() const { return false; }
-    /// From a texel of layout.floats() to them.
+    /// Makes the averaged floats from a texel of layout.floats().
     virtual void reduce(const float* texel, float* linear) const = 0;
-    /// Neighbours of a level, linear[texel][linear()].
+    /// Encodes neighbouring texels of a level, linear[texel][linear()].
     virtual EncodedRange encode(std::size_t level, std::span<const float> linear,
                                 const EncodedTexels& to) const = 0;
     /// Shapes and materials that texels share, as MapSidecar has them; empty: none.

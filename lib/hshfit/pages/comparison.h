@@ -97,7 +97,8 @@ struct AddedComparison {
 AddedComparison addComparison(const Comparison& comparison, FileSet& files,
                               const std::string& opening = {});
 
-/// Both in one, with the folder made before the work: a folder that cannot be made costs nothing.
+/// Compares and writes in one call. The folder is made before the work: a folder that cannot be
+/// made costs nothing.
 std::vector<std::string> writeComparison(const Brdf& reference, const Brdf& approximation,
                                          const ComparisonOptions& options,
                                          const std::string& folder);

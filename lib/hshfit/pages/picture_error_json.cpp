@@ -13,7 +13,7 @@ Json placeJson(const Direction& d) {
     return {{"theta", degrees(polarAngle(d))}, {"phi", degrees(azimuth(d))}};
 }
 
-/// Without a place where there is no difference.
+/// The value, and its place if there is a difference.
 Json differenceJson(const SeenDifference& difference) {
     Json json = {{"value", difference.value}};
     if (!(difference.value > 0)) return json;

@@ -78,7 +78,7 @@ PictureError pictureError(const Brdf& f, const Brdf& g);
 
 /// The value for people: "12 %", "0 %" below 0.005 %, "12 times" from tenfold on.
 std::string shareText(const SeenDifference& difference);
-/// For people: five lines without indentation, each ended, the last degrees last.
+/// A text for people: five lines without indentation, each ended, the last degrees last.
 std::string textOf(const PictureError& error);
 /// "FLIP 0.041, CIEDE2000 1.2, false dip 12 %, false peak 0 %, mirror direction off by 8 %"
 std::string summaryOf(const PictureError& error);

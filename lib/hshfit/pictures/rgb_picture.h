@@ -24,7 +24,7 @@ struct RgbPicture {
 /// eight bits of sRGB above black, the exposure that shows this share of it as `shownAsWhite`: a
 /// narrow highlight on black would show rounding errors otherwise. Rounded to a tenth; 0 for black.
 double automaticExposure(const RgbPicture& picture);
-/// Likewise from the largest channel of each pixel.
+/// The same exposure from the largest channel of each pixel.
 double automaticExposure(std::vector<float> largest);
 
 /// Throws NumericError, which names the picture and the pixel, for a value that is not finite.

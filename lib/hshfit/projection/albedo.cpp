@@ -36,7 +36,7 @@ public:
     static int first() { return 0; }
     static int believed() { return 1; }
 
-    /// None if it takes more evaluations than these.
+    /// Computes a level; false if it takes more evaluations than these.
     bool at(int level, std::size_t evaluations, Level& out) {
         const HemisphereGrid grid =
             gridFor(lobes_, wo_, {.order = 1, .level = level, .squeezed = true}, kinks_, curves_);

@@ -50,9 +50,9 @@ public:
 
     AzimuthPeaks(const std::vector<Lobe>& lobes, const Direction& wo, double a, double b);
 
-    /// None where there are no lobes, or with `even`, none on the x axis.
+    /// The narrowest peak; null where there are no lobes, or with `even`, no lobes on the x axis.
     const Peak* narrowest(bool even) const;
-    /// The least of the scales; at most that assumed for a BRDF without lobes.
+    /// The least of the scales; at most the scale assumed for a BRDF without lobes.
     double scale() const;
     /// The least scale for azimuths clustered about `centre`, in t.
     double scaleAbout(const Peak& centre, double kappa) const;

@@ -11,7 +11,8 @@
 namespace hshfit::inline representation {
 namespace {
 
-/// In slots, as many rows as there are, with the L2 norm over the hemisphere as Euclidean norm.
+/// Changes rows of slots, as many as there are, so that their Euclidean norm is the L2 norm over
+/// the hemisphere.
 void whitenRows(const Representation& representation, std::vector<double>& rows) {
     const CoefficientHead& head = representation.head;
     const auto basis = bases::make(head.basis, head.order, {.condonShortley = head.condonShortley});

@@ -118,7 +118,7 @@ struct HemisphereRotation::Parts {
         return result;
     }
 
-    /// By way of SH of one order.
+    /// Rotates by way of SH with `bands` bands.
     Matrix through(int bands, double beta, const Matrix& c) const {
         const auto sh = bases::make("sh", bands, {.condonShortley = basis->condonShortley()});
         const BasisChange to(*basis, *sh), back(*sh, *basis);

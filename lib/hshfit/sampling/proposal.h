@@ -30,14 +30,15 @@ double proposalWidth(std::uint8_t code);
 /// equals the density of the samples everywhere. Eight bytes per row.
 struct Proposal {
     using Row = std::array<ProposalLobe, 2>;
-    /// By outgoing elevation. Only the second lobe may be a retro one, and then is in all rows.
+    /// Rows by outgoing elevation (proposalPlace). Only the second lobe may be a retro one, and
+    /// then is in all rows.
     std::vector<Row> rows;
 
     std::size_t bytes() const { return rows.size() * sizeof(Row); }
     bool isotropic() const;  ///< whether the widths along x and y are the same
     bool operator==(const Proposal&) const = default;
 };
-/// As many rows, and the largest sum of a row's two shares, in 255ths.
+/// The most rows, and the largest sum of a row's two shares, in 255ths.
 inline constexpr std::size_t mostProposalRows = 256;
 inline constexpr int mostProposalShare = 247;
 

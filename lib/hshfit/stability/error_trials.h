@@ -57,12 +57,13 @@ struct ErrorTrialResult {
 
 struct ErrorTrialOptions {
     double tolerance = 0;  ///< of the projections that are tried; 0: each BRDF's default
-    /// For a reference; beyond, one at a tenth of the tolerance is tried.
+    /// The most evaluations of a reference. If they do not suffice, a reference at a tenth of the
+    /// tolerance is tried.
     std::size_t referenceEvaluations = std::size_t{1} << 20;
     std::function<void(std::size_t, std::size_t)> progress = {};
 };
 
-/// In the order of the trials. Results do not depend on the number of threads.
+/// The results in the order of the trials. They do not depend on the number of threads.
 std::vector<ErrorTrialResult> tryErrors(std::span<const ErrorTrial> trials,
                                         const ErrorTrialOptions& options = {});
 

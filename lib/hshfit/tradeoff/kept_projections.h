@@ -79,11 +79,11 @@ private:
     std::string fileKeyOf(Form root) const;
     std::size_t fitEvaluations() const;
     const Made& made(const Form& form);
-    /// Takes it from the folder, or projects.
+    /// Takes the projection from the folder, or projects.
     void make(const Form& root);
     void keep(const Form& root, const Made& made) const;
     std::vector<std::pair<Form, Made>> projectedAlone(const Form& root) const;
-    /// In all bases.
+    /// Projections in all bases of a search.
     std::vector<std::pair<Form, Made>> projectedTogether(const Form& root) const;
 
     const Brdf& brdf_;

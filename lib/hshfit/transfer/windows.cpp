@@ -23,7 +23,7 @@ double squared(double x) {
     return x * x;
 }
 
-/// At x = pi l / n.
+/// The factor of a window at x = pi l / n; 1 for the others.
 double factorAt(Window window, double x) {
     if (window == Window::hann) return (1 + std::cos(x)) / 2;
     if (window == Window::lanczos) return x == 0 ? 1 : std::sin(x) / x;

@@ -83,7 +83,8 @@ public:
 
     const EnvironmentSampler& environment() const { return environment_; }
     bool hasEmitters() const { return !emitters_.empty(); }
-    /// In proportion to area times radiance. Three independent numbers, uniform in [0, 1).
+    /// Samples emitters in proportion to area times radiance, by three independent numbers `u`,
+    /// uniform in [0, 1).
     EmitterSample sampleEmitters(const std::array<double, 3>& u) const;
     /// The density of `sampleEmitters` at a hit, per area; 0 where it emits nothing.
     double emitterPdf(const SurfaceHit& hit) const;

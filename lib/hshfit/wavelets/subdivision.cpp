@@ -58,13 +58,13 @@ public:
     double product(std::size_t corner, double tangent) const {
         return tangent / (sine_[corner] - tangent * cosine_[corner]);
     }
-    /// From the new corner on the edge that begins at corner i to that on the next edge, so that
-    /// corner i + 1 has the area.
+    /// The map from the new corner on the edge that begins at corner i to the new corner on the
+    /// next edge, so that corner i + 1 has the area.
     Mobius step(std::size_t i, double tangent) const {
         const double k = product((i + 1) % 3, tangent);
         return {k * side[i], k, -1, side[i]};
     }
-    /// Around the triangle, back to the first edge: fixed points are subdivisions.
+    /// The map around the triangle, back to the first edge: fixed points are subdivisions.
     Mobius around(double tangent) const {
         return step(2, tangent).after(step(1, tangent).after(step(0, tangent)));
     }

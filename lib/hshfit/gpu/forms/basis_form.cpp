@@ -15,9 +15,9 @@
 namespace hshfit::gpu::inline forms {
 namespace {
 
-/// As many terms as a compiler of shaders takes in a function without giving up.
+/// The most terms that a compiler of shaders takes in a function without giving up.
 constexpr std::size_t mostTerms = 4096;
-/// As many terms as a factored form may stand for.
+/// The most terms that a factored form may stand for.
 constexpr std::size_t mostFactored = 1U << 18U;
 /// Terms in one statement, so that no expression is nested too deeply for a compiler.
 constexpr std::size_t termsTogether = 12;

@@ -36,7 +36,7 @@ public:
     const Laws& laws() const override { return laws_; }
     void eval(const Direction& wo, DirectionBatch wi, double* out) const override;
     std::vector<Lobe> lobes(const Direction& wo) const override;
-    /// As of the sums without a table.
+    /// The tolerance of the sums without a table.
     double defaultTolerance() const override { return 1e-2; }
 
 private:

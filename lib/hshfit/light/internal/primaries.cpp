@@ -29,7 +29,7 @@ Colour product(const ColourMatrix& a, const Colour& v) {
     return result;
 }
 
-/// By cofactors; none where it is singular.
+/// The inverse by cofactors; none for a singular matrix.
 std::optional<ColourMatrix> inverse(const ColourMatrix& a) {
     ColourMatrix cofactors{};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -51,7 +51,7 @@ Colour xyzOf(double x, double y) {
     return {x / y, 1, (1 - x - y) / y};
 }
 
-/// From R, G, B to XYZ, with Y = 1 for R = G = B = 1.
+/// The matrix from R, G, B to XYZ, with Y = 1 for R = G = B = 1; none for invalid primaries.
 std::optional<ColourMatrix> toXyz(const std::array<double, 8>& p) {
     for (std::size_t k = 1; k < p.size(); k += 2)
         if (!(std::abs(p[k]) > 1e-6)) return {};

@@ -64,11 +64,12 @@ class LobeSearch {
 public:
     LobeSearch(int bands, const Prefilter& engine, std::size_t lobes, bool inPlane);
 
-    /// One lobe after the other from a grid of axes, each again with the others fixed, then between
-    /// the grid's axes.
+    /// A search without a start: one lobe after the other from a grid of axes, each again with the
+    /// others fixed, then between the grid's axes.
     LobeSolution free(const LobeTarget& target, double theta) const;
-    /// From the lobes of a row beside it at `before`, at most 0.1 in roughness and 12 degrees,
-    /// about the mirror direction, away from them; `reach`: the share of these.
+    /// A search that starts from the lobes of a row beside it, whose theta is `before`. Lobes move
+    /// at most 0.1 in roughness and, about the mirror direction, 12 degrees; `reach` is the share
+    /// of these bounds that is allowed.
     LobeSolution continued(const LobeTarget& target, double theta,
                            std::span<const LobePlace> places, double before,
                            double reach = 1) const;

@@ -31,7 +31,7 @@ class SpreadSolver {
 public:
     SpreadSolver(const LobeKernel& kernel, const LobeTaps& taps);
     SpreadLobe solve(double meanCosine, const LobeSpread& spread) const;
-    /// As LobeKernel::scaleFor, from a table.
+    /// LobeKernel::scaleFor, interpolated in a table.
     double scaleFor(double meanCosine) const;
 
 private:

@@ -23,7 +23,8 @@ struct RoundedMaterial {
 class RoundingErrors {
 public:
     explicit RoundingErrors(const Basis& basis);
-    /// Without FLIP. The digits do not depend on threads, but on which materials are together.
+    /// The errors, without FLIP. The digits do not depend on threads, but on which materials are
+    /// together.
     std::vector<FormError> of(std::span<const RoundedMaterial> materials) const;
 
 private:

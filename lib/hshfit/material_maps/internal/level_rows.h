@@ -19,7 +19,8 @@ public:
             rows_.emplace_back(2 * (width >> level) * step);
         reset(width);
     }
-    /// Another tile, `width` no larger than before; a multiple of 2^(levels - 1), or one level.
+    /// Begins another tile, whose `width` is no larger than before and, for several levels, a
+    /// multiple of 2^(levels - 1).
     void reset(std::size_t width) {
         width_ = width;
         counts_.assign(counts_.size(), 0);

@@ -15,7 +15,7 @@ class PageBuffer {
 public:
     static constexpr std::size_t page = 4096;
 
-    /// At least so many bytes; what the buffer had is lost where it grows.
+    /// Makes room for at least so many bytes. The content is lost if the buffer grows.
     void reserve(std::size_t bytes) {
         if (bytes <= size_) return;
         bytes_.reset();

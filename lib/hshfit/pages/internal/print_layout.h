@@ -9,7 +9,7 @@
 
 namespace hshfit::inline pages {
 
-/// In points from the lower left corner.
+/// The box of a panel, in points from the lower left corner.
 struct PrintBox {
     double left = 0, right = 0, bottom = 0, top = 0;
     bool labelsX = true, labelsY = true;  ///< whether its ticks have labels

@@ -72,7 +72,7 @@ private:
     Choice choiceOf(const Rung& rung, double error) const;
     /// The choice with its FLIP, if the budget bounds it.
     Choice shownChoice(const Rung& rung, double error);
-    /// As the command makes it.
+    /// The rung's coefficients, as the command makes them.
     Representation fileOf(const Rung& rung);
     /// Makes the file and verifies by lattice points; none if verification fails.
     std::optional<Accepted> accept(const Rung& rung);
@@ -86,7 +86,8 @@ private:
     void takeFastest();
     /// The largest halfway form in half, if it keeps to the budget.
     void takeLarge();
-    /// Without an accepted choice, or time, finds the front of all tried rungs.
+    /// Finds the cheaper and dearer choices; without an accepted choice, or time, the front of all
+    /// tried rungs.
     void findNeighbours(std::size_t chosen);
     /// The least truncation error of any linear form.
     double leastFloor() const;

@@ -7,7 +7,7 @@
 namespace hshfit::inline rendering {
 namespace {
 
-/// Half of a side of the smallest cells, of a panel that has 1.
+/// Half of a side of the smallest cells, where half of a panel's side is 1.
 constexpr double smallest = 1.0 / 4096;
 
 }  // namespace

@@ -49,7 +49,7 @@ public:
     virtual ~ProjectionSource() = default;
     /// Coefficients per outgoing direction, exactly of this basis and order.
     virtual Coefficients outgoing(const Form& form) = 0;
-    /// Both directions in one basis.
+    /// The matrix of coefficients for both directions in one basis.
     virtual Representation both(const Form& form) = 0;
     virtual Representation halfway(const Form& form) = 0;
     /// The BRDF that is being represented, less what `split` took out.
@@ -61,7 +61,7 @@ std::unique_ptr<ProjectionSource> projecting(const Brdf& brdf, const ProjectionO
 /// Throws UsageError where options contradict each other or the BRDF.
 Representation represent(const Brdf& brdf, const Form& form, const BrdfOpener& open,
                          const ProjectionOptions& options = {});
-/// From projections at hand. `added` is the part of the BRDF that `split` took out.
+/// The form from projections at hand. `added` is the part of the BRDF that `split` took out.
 Representation represent(ProjectionSource& source, const Form& form, const std::string& added = {});
 
 /// The set that the form names (OutgoingSet::parse). Where it names none, 32 elevations of an

@@ -22,7 +22,7 @@ struct AzimuthNode {
 
 constexpr double smallestPanel = 1e-6;  // adds errors of its square
 
-/// By how much the angle of shifted functions, arccos(2 z - 1), turns between the horizon and a
+/// The change of the angle of shifted functions, arccos(2 z - 1), between the horizon and a
 /// distance from it: some 2 sqrt(distance), much more than the distance itself where it is small.
 double shiftedTurn(double distance) {
     return pi - std::acos(2 * std::sin(std::min(distance, pi / 2)) - 1);

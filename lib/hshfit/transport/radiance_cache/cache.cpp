@@ -355,7 +355,7 @@ Gathered RadianceCache::gatheredAt(const SurfaceHit& hit, double height, std::ui
                            .longRadius = least};
         if (!(errorOf(there, hit.position, hit.frame.normal) < options_.accuracy)) place.reset();
     }
-    // Beyond the keys of the surfaces' points, whatever their number.
+    // The key lies beyond the keys of the surfaces' points, whatever their number.
     const RandomNumbers random(options_.seed, (std::uint64_t{1} << 40) + n);
     return gather(place.value_or(hit), kind, materials_.kinds[kind], strata_[kind],
                   options_.gradient, gathering, random, rays);
@@ -371,7 +371,8 @@ double RadianceCache::limit(Gathered& gathered, double height) const {
         limitByBends(record, gathered.bends, height);
     }
     if (!(record.radius < least)) return least;
-    // Over a reach that cannot be kept small, the gradient is (Tabellion & Lamorlette 2004).
+    // Where the reach cannot be as small as it should, the gradient is made smaller (Tabellion &
+    // Lamorlette 2004).
     const std::size_t size = materials_.kinds[record.kind].size();
     const auto factor = static_cast<float>(record.radius / least);
     for (const std::size_t part : {1U, 2U})

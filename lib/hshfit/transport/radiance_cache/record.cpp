@@ -18,7 +18,8 @@ struct Rays {
     std::vector<Rgb> radiance;    ///< as found
     std::vector<Rgb> smooth;      ///< for differences (Walk)
     std::vector<float> inverse;   ///< one over the distance, 0 where a ray is lost
-    /// Likewise to what is seen in a surface that is not diffuse, whose number is in `glossy`.
+    /// One over the distance to what is seen in a surface that is not diffuse, whose number is in
+    /// `glossy`.
     std::vector<float> inverseBeyond;
     std::vector<std::size_t> glossy;
     std::size_t stuck = 0;           ///< rays that end where they start, to rounding

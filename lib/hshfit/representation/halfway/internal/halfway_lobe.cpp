@@ -30,7 +30,7 @@ constexpr std::array ratios{1.5, 2.5, 4.0, 7.0, 12.0};
 constexpr int turns = 8;
 /// The factor by which widths of lobes that are tried with all terms differ at least.
 constexpr double otherWidth = 1.5;
-/// By which each of two widths is changed in the end.
+/// The factors by which each of two widths is changed in the end.
 constexpr std::array refinements{1.2, 1.07};
 
 double inSingle(double value) {
