@@ -41,8 +41,8 @@ struct LightCoefficients {
     /// Integral of L^2 over the domain, in the inner product of the basis, summed over channels.
     /// Not finite for lights that are points.
     Energy energy = {};
-    /// Estimated relative error: the norm of the error of all coefficients over the norm of the
-    /// coefficients (roots of sums of squares).
+    /// Estimated relative error of the integrals of L times the basis functions, by roots of sums
+    /// of squares. If the basis is orthonormal, these integrals are the coefficients.
     double error = 0;
     std::vector<LightCurve> curves = {};
 
