@@ -12,13 +12,16 @@
 #include <hshfit/light/light_projection.h>
 #include <hshfit/light/light_wavelets.h>
 #include <hshfit/light/picture_light.h>
+#include <hshfit/percent.h>
 #include <hshfit/specification/sums.h>
 #include <hshfit/wavelets/slices.h>
+#include <hshfit/wording.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -156,6 +159,14 @@ ProjectedLight light(const std::vector<std::string>& specs, const std::string& o
                      {.domain = {.normal = options.normal}, .tolerance = options.tolerance});
     result.light.source = specification.text;
     result.remarks = remarksOf(specification.lights);
+    constexpr double poor = 1e-3;
+    if (result.light.error > std::max(options.tolerance, poor))
+        result.remarks.push_back(fmt::format(
+            "poor: the coefficients are off by about {}; better: {}, or fewer bands",
+            percent(result.light.error, 2),
+            options.basis == "lsosh"
+                ? Setting{"LightOptions::basis", "hsh"}
+                : Setting{"LightOptions::tolerance", fmt::format("{:g}", options.tolerance / 10)}));
     result.bands = bandEnergies(result.light);
     for (const double share : lightShares)
         result.enough.push_back(orderReaching(result.light.curves.front(), share));

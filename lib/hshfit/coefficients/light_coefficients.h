@@ -41,8 +41,7 @@ struct LightCoefficients {
     /// Integral of L^2 over the domain, in the inner product of the basis, summed over channels.
     /// Not finite for lights that are points.
     Energy energy = {};
-    /// Estimated relative error of the integrals of L times the basis functions, by roots of sums
-    /// of squares. If the basis is orthonormal, these integrals are the coefficients.
+    /// Estimated relative error of the coefficients, by roots of sums of squares.
     double error = 0;
     std::vector<LightCurve> curves = {};
 

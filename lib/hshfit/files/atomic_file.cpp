@@ -198,7 +198,7 @@ void AtomicFile::requirePlace() {
     standsAlready_ = haveSameBytes(temporary_, target_);
     if (standsAlready_) return;
     const auto made = madeFromOf(target_);
-    if (made && !key_.empty() && made->key == key_) return;
+    if (made && !made->changed && !key_.empty() && made->key == key_) return;
     throw OutputError(
         fmt::format("'{}' exists and differs from what would be written; nothing is "
                     "written without {}",

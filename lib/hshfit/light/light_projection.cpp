@@ -1,5 +1,6 @@
 #include <hshfit/light/light_projection.h>
 
+#include <hshfit/bases/catalog.h>
 #include <hshfit/bases/sh.h>
 #include <hshfit/error.h>
 #include <hshfit/light/coefficient_light.h>
@@ -148,10 +149,31 @@ Moments momentsByNodes(const std::vector<const Light*>& lights, const Basis& bas
     return moments;
 }
 
+/// Coefficients of each channel from its moments.
+Moments coefficientsOf(const Basis& basis, const Moments& moments) {
+    Moments coefficients(moments.size());
+    const auto slots = static_cast<std::size_t>(basis.slots());
+    for (std::size_t c = 0; c < 3; ++c)
+        basis.coefficientsFromMoments(moments.data() + c * slots, basis.order(),
+                                      coefficients.data() + c * slots);
+    return coefficients;
+}
+
+/// The relative rounding of coefficients. It grows with the order, and a Gram system enlarges it by
+/// up to the root of its largest inverse eigenvalue, which the solution of moments of alternating
+/// signs shows.
+double roundingOf(const Basis& basis) {
+    const double ofBasis = std::numeric_limits<double>::epsilon() * basis.order();
+    if (bases::find(basis.name()).orthonormal) return ofBasis;
+    Moments signs(3 * static_cast<std::size_t>(basis.slots()));
+    for (std::size_t i = 0; i < signs.size(); ++i) signs[i] = i % 2 == 0 ? 1 : -1;
+    return ofBasis * std::sqrt(squares(coefficientsOf(basis, signs)) / squares(signs));
+}
+
 struct Integrated {
     Moments moments;
     std::vector<std::optional<double>> energies;  ///< of each light by itself, where known
-    double error = 0;                             ///< relative to the root of the sum of squares
+    double error = 0;  ///< of the coefficients, relative to the root of the sum of their squares
 };
 
 Integrated integrate(std::span<const Light> lights, const Basis& basis,
@@ -173,16 +195,15 @@ Integrated integrate(std::span<const Light> lights, const Basis& basis,
         for (int level = 1; level == 1 || (level <= options.maxLevel && work < mostWork); ++level) {
             Moments next = momentsByNodes(others, basis, options.domain, level, work);
             for (std::size_t k = 0; k < next.size(); ++k) last[k] -= next[k];
-            missed = squares(last);
+            missed = squares(coefficientsOf(basis, last));
             last = std::move(next);
-            if (missed <= options.tolerance * options.tolerance * squares(last)) break;
+            const double reached = squares(coefficientsOf(basis, last));
+            if (missed <= options.tolerance * options.tolerance * reached) break;
         }
         for (std::size_t k = 0; k < last.size(); ++k) result.moments[k] += last[k];
     }
-    const double all = squares(result.moments);
-    // Rounding of the basis grows with the order.
-    result.error = std::numeric_limits<double>::epsilon() * basis.order() +
-                   (all > 0 ? std::sqrt(missed / all) : 0);
+    const double all = squares(coefficientsOf(basis, result.moments));
+    result.error = roundingOf(basis) + (all > 0 ? std::sqrt(missed / all) : 0);
     return result;
 }
 
@@ -223,11 +244,7 @@ LightCoefficients projectLight(std::span<const Light> lights, const Basis& basis
         light.normalTheta = options.domain.normal->theta;
         light.normalPhi = options.domain.normal->phi;
     }
-    light.values.resize(result.moments.size());
-    for (std::size_t c = 0; c < 3; ++c) {
-        basis.coefficientsFromMoments(result.moments.data() + c * light.slots(), basis.order(),
-                                      light.at(c));
-    }
+    light.values = coefficientsOf(basis, result.moments);
     const bool projected = basis.inner() == Basis::Inner::projectedSolidAngle;
     light.energy = lightEnergy(lights, options.domain, projected, result.energies);
     light.error = result.error;

@@ -22,7 +22,8 @@ struct LightProjectionOptions {
 /// latitude-longitude pictures (latlong_projection.h), light from one direction, and discs, whose
 /// zonal coefficients are 2 pi times the integral of P_l from cos r to 1, sin r P_l^1(cos r) /
 /// (l (l + 1)), turned by the addition theorem. All else, and every light of a hemisphere: nodes
-/// (light_nodes.h) at levels until two agree; the last difference is the stated error.
+/// (light_nodes.h) at levels until two agree; the last difference of the coefficients is the stated
+/// error. lsosh solves a Gram system, which enlarges the errors of the integrals.
 /// Throws UsageError without lights.
 LightCoefficients projectLight(std::span<const Light> lights, const Basis& basis,
                                const LightProjectionOptions& options = {});

@@ -21,7 +21,9 @@ std::size_t countNumbers(std::string_view spec) {
         };
         const bool begins = isDigit(i) || (spec[i] == '.' && isDigit(i + 1));
         const bool after = i == 0 || std::string_view("=/*+, -").find(spec[i - 1]) < 7;
-        count += begins && after && !(i > 1 && spec[i - 1] == '-' && spec[i - 2] == 'e');
+        const bool ofExponent =
+            i > 1 && spec[i - 2] == 'e' && !isDigit(i - 1) && spec[i - 1] != '.';
+        count += begins && after && !ofExponent;
     }
     return count;
 }

@@ -129,6 +129,23 @@ TEST_F(Rule, EqualBytesAreKeptAndOthersRefused) {
     EXPECT_EQ(contentOf(folder_ / "a.csv"), "2");
 }
 
+TEST_F(Rule, OfOneKeyOnlyWhatNobodyChangedIsReplaced) {
+    state("k");
+    const std::string path = folder_ / "a.json";
+    hshfit::writeFile(path, "{\"seconds\": 1}\n");
+    hshfit::writeFile(path, "{\"seconds\": 2}\n");
+    const std::string written = contentOf(path);
+    EXPECT_NE(written.find("\"seconds\": 2"), std::string::npos);
+    std::string edited = written;
+    edited.replace(edited.find("2"), 1, "3");
+    put(path, edited);
+    EXPECT_THROW(hshfit::writeFile(path, "{\"seconds\": 4}\n"), OutputError);
+    EXPECT_EQ(contentOf(path), edited);
+    state("other");
+    put(path, written);
+    EXPECT_THROW(hshfit::writeFile(path, "{\"seconds\": 4}\n"), OutputError);
+}
+
 TEST_F(Rule, ASetIsRefusedAsAWhole) {
     state("");
     put(folder_ / "b", "mine");
