@@ -35,7 +35,8 @@ public:
         const double length = std::sqrt(dot(sum, sum));
         half_ = {sum.x / length, sum.y / length, sum.z / length};
         const double across = std::hypot(half_.x, half_.y);
-        // About the normal the plane's axes are those of wi, so that both may turn about it.
+        // Where the half vector is the normal, the plane's axes follow wi, so that the pair may
+        // turn about the normal.
         const bool tilted = across > 1e-9;
         const Direction& axis = tilted ? half_ : wi;
         const double flatAxis = std::hypot(axis.x, axis.y);

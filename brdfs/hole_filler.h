@@ -11,7 +11,7 @@
 namespace hshfit::brdfs {
 
 /// The accuracy of fills: the covered pairs next to holes are predicted as if they were holes, from
-/// neighbours at the same places as those of the hole.
+/// neighbours at the same places as the neighbours of the hole.
 struct FillCheck {
     std::size_t pairs = 0;  ///< covered pairs that were predicted
     /// Relative errors |filled - f| / max(|f|, 1 % of the median f), over pairs and channels.

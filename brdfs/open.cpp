@@ -89,7 +89,7 @@ const Format& formatByExtension(const std::string& path, std::span<const unsigne
         plain && std::ranges::none_of(head, [](unsigned char c) { return c == ' ' || c == '\n'; });
     const Format* misfit = nullptr;
     for (const Format& format : formats()) {
-        // FRED's extension is that of any text.
+        // FRED's files end in .txt, as any text does.
         if (format.extension != extension || extension == ".txt") continue;
         const bool either =
             std::ranges::find(eitherFormats, format.name) != std::end(eitherFormats);

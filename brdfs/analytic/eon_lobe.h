@@ -32,8 +32,8 @@ struct EonSettings {
     }
 };
 
-/// At a roughness of 0 the multiple scattering is 0; its slope, if asked for, is that of a small
-/// one.
+/// The roughness of the terms. At 0 the multiple scattering is 0; its slope, if asked for, is taken
+/// at a roughness of `least`.
 template <class N>
 N eonRoughness(const N& roughness) {
     constexpr double least = 1e-6;

@@ -24,7 +24,8 @@ struct FacetText {
     std::vector<std::vector<Number>> indices = {};
 };
 
-/// D of GGX or a Gaussian of slopes; Smith's masking, or that of a variant of Ward's.
+/// Text for the D of GGX or of a Gaussian of slopes, with Smith's masking or with the factor of one
+/// of the variants of Ward's model; `flags` choose.
 FacetText facetText(std::vector<FacetText::Number> numbers, std::vector<std::string> flags);
 
 }  // namespace hshfit::brdfs

@@ -4,9 +4,9 @@ namespace hshfit::brdfs {
 
 // Reflectance of a smooth boundary for unpolarised light: Fresnel's equations as in Born & Wolf,
 // "Principles of Optics", 7th ed., 1999, 1.5.2 and 14.2. `cosine` is of the angle of
-// incidence, in [0, 1]; `eta` and `k` are the index beyond the boundary over that on the side of
-// the light (n = eta + i k), eta > 0, k >= 0. Results lie in [0, 1] and are never NaN for
-// arguments in these ranges, 1 and the horizon included. The relative accuracy is that of eta - 1.
+// incidence, in [0, 1]; n = eta + i k, eta > 0, k >= 0, is the index beyond the boundary over the
+// index on the side of the light. Results lie in [0, 1] and are never NaN for arguments in these
+// ranges, 1 and the horizon included. Their relative accuracy is the accuracy of eta - 1.
 
 /// Mean of the reflectances along and across the plane of incidence:
 ///     R_s = |(c - g)/(c + g)|^2,  R_p = R_s |(c g - s^2)/(c g + s^2)|^2,  g^2 = n^2 - s^2.

@@ -42,8 +42,8 @@ HWY_INLINE T reflectanceOfRoot(R c, R squaredSine, const ComplexOf<T>& g) {
 /// N is double or ParameterOf<T>.
 template <class T, class R, class N>
 HWY_INLINE T reflectanceOf(R cosine, const N& eta, const N& k) {
-    // The fourth power of a cosine below 1e-75 underflows; the reflectance is that of the
-    // horizon there.
+    // The fourth power of a cosine below 1e-75 underflows; the reflectance there equals the
+    // reflectance at the horizon.
     const R c = min(max(cosine, R(1e-75)), R(1.0));
     const R squaredSine = (1.0 - c) * (1.0 + c);
     const T real = c * c + T((eta - 1) * (eta + 1) - k * k);

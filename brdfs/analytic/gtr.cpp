@@ -81,7 +81,8 @@ std::vector<Parameter> parameters() {
     return all;
 }
 
-/// The D of the model. GGX (gamma = 2) has its own masking, other gammas that of V-shaped grooves.
+/// Samples normals by the D of the model as they are visible: under the masking of GGX for gamma =
+/// 2, under the masking of V-shaped grooves for other gammas.
 HasSamplers::Known sampling(const Parameters& p) {
     const double alpha = p.number("alpha"), gamma = p.number("gamma");
     if (gamma == 2) return {.all = true, .samplers = {ggxSampler(alpha, alpha)}};

@@ -14,8 +14,8 @@ namespace hshfit::brdfs {
 ///     H(x) = 1 / (1 - w x (r0 + (1 - 2 r0 x)/2 ln(1 + 1/x))),  r0 = (1 - gamma)/(1 + gamma)
 ///                                     h-function=2002: Hapke 2002, 10.1006/icar.2002.6853
 /// w is the single-scattering albedo, b > 0 the width and c the direction of the phase function:
-/// back for c > 0. Without the roughness of the surface (theta-bar). H of 1981 errs by up to 4 %,
-/// that of 2002 by less than 1 %.
+/// back for c > 0. The roughness of the surface (theta-bar) is left out. The H of 1981 errs by up
+/// to 4 %, the H of 2002 by less than 1 %.
 const Model& hapkeModel();
 
 }  // namespace hshfit::brdfs

@@ -15,7 +15,8 @@ struct HeShape {
     N ior, height, length, slope;
 };
 
-/// The ratio of the factor g^(m - 1) exp(-g) / (m! m) to that of m - 1, without g; and 1 / m.
+/// For the factors F_m = g^(m - 1) exp(-g) / (m! m): `growth` is F_m / (g F_{m-1}).
+/// `inverse` is 1 / m.
 struct HeFactors {
     static constexpr std::size_t last = 150;
     std::array<double, last + 1> growth{}, inverse{};

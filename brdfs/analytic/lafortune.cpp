@@ -31,8 +31,8 @@ HWY_EXPORT(lafortuneColumns);
 
 constexpr Laws claims{.nonNegative = true, .reciprocal = true, .mirrorSymmetric = true};
 
-/// For |wo| = 1 the lobe is at most (max |C| cos)^exponent about some axis, whose albedo is at most
-/// that of a lobe about the normal: ks max |C|^exponent 2 pi / (exponent + 2).
+/// For |wo| = 1 the lobe is at most (max |C| cos)^exponent about some axis. The albedo is largest
+/// if the axis is the normal: ks max |C|^exponent 2 pi / (exponent + 2).
 Laws lawsOf(const Parameters& p) {
     Laws result = claims;
     result.isotropic = p.number("Cx") == p.number("Cy");

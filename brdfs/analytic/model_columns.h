@@ -18,7 +18,7 @@ struct PairBatch {
 ///     f = column_0 + sum_k linear_k column_k,
 /// with derivatives by the parameters in which f is not linear.
 struct ColumnRequest {
-    const Parameters& values;  ///< colours grey, or of `channel`; those of `linears` do not count
+    const Parameters& values;  ///< colours grey or by channel; values of `linears` do not count
     std::span<const std::string> linears = {};  ///< parameters in which f is jointly linear
     /// Parameters of the derivatives; the keys of a group share one value. Empty: no derivatives.
     std::span<const std::vector<std::string>> shapes = {};

@@ -33,7 +33,7 @@ Laws lawsOf(const Parameters& p) {
     laws.isotropic = base.ax == base.ay && (p.number("coat_weight") == 0 || coat.ax == coat.ay);
     laws.mirrorSymmetric = laws.isotropic || p.number("geometry_tangent") == 0;
     laws.reciprocal = bare && p.number("base_metalness") == 1;
-    // Under layers the sum is that of their albedos, which are known to 1e-3.
+    // Layers scale the base by their albedos. These are known to 1e-3, and so is the sum.
     laws.energyConserving = bare && p.number("base_metalness") == 1;
     return laws;
 }

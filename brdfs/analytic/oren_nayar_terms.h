@@ -66,8 +66,8 @@ public:
         const R bend = 4 / (pi * pi) * ofAlpha(o_.theta, i.theta) * betaTheta;
         const R tilt = 2 / pi * betaTheta;
 
-        // (sin alpha - [cos D < 0] (2 beta/pi)^3) tan beta. The difference is that of the
-        // distances of both from 1, because tan beta amplifies its rounding error at the horizon.
+        // (sin alpha - [cos D < 0] (2 beta/pi)^3) tan beta. The distances of both terms from 1
+        // are subtracted, because tan beta amplifies rounding errors at the horizon.
         const R e = 2 / pi * ofBeta(o_.complement, i.complement);
         const R cubeBelowOne = e * (3.0 - 3.0 * e + e * e);
         const R sineBelowOne = alphaCosine / (1.0 + alphaSine) * alphaCosine;

@@ -12,7 +12,7 @@ namespace hshfit::brdfs {
 ///     O = (t - sin t cos t) (sec_i + sec_o) / pi
 ///     cos t = hb sqrt(D^2 + (tan_i tan_o sin phi)^2) / (sec_i + sec_o), at most 1
 ///     D^2 = tan_i^2 + tan_o^2 - 2 tan_i tan_o cos phi
-/// where the angles of K_geo are those of tan' = br tan. `hb` = h/b = 2 and `br` = b/r = 1 are the
+/// where K_geo has polar angles with tan' = br tan. `hb` = h/b = 2 and `br` = b/r = 1 are the
 /// shape of MODIS's crowns. The kernels are negative for many pairs; f is cut at 0. Past 75 degrees
 /// the kernels were not meant to be used.
 const Model& rossLiModel();

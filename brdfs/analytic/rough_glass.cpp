@@ -42,8 +42,8 @@ RoughGlassShape shapeOf(const Parameters& p) {
             .beckmann = p.choice("distribution") == "beckmann"};
 }
 
-/// The peak over one of the directions for the other, w: where the facet of the normal sends it. n
-/// is the index on the side of w over that of the other.
+/// The peak of f over one direction if the other is w: the direction to which a facet that lies in
+/// the surface refracts w. n is the index on the side of w over the index on the other side.
 std::vector<Lobe> refracted(const Direction& w, double n, const RoughGlassShape& shape) {
     const double sine = n * std::hypot(w.x, w.y);
     // Slopes are half of what they were 2.5 standard deviations from the peak of a Gaussian.

@@ -64,8 +64,8 @@ public:
     Known samplers() const override { return known_; }
 
 protected:
-    /// `laws` are those of this instance: the table line's, or more. `weights` has at most
-    /// TermBatch::maxTerms entries.
+    /// `laws` hold for this instance: the laws of the model's table line, or more. `weights` has at
+    /// most TermBatch::maxTerms entries.
     TermBrdf(const Model& model, const Parameters& parameters, Laws laws, const Colour& constant,
              const std::vector<Colour>& weights);
     TermBrdf(const Model& model, const Parameters& parameters, Laws laws,

@@ -16,7 +16,7 @@ namespace hshfit::brdfs {
 /// cut to [0, 1]; s = -1 if n >= ior, else 1. S(D), the Fourier transform of Gaussians fitted to
 /// the CIE curves, is sum_j a_j cos(2 pi p_j D) exp(-v_j (2 pi D)^2) in X, Y and Z, in R, G and B
 /// by Rec. 709's matrix, with the constants of the extension. f0 is at most 0.9999 and R12 R23 at
-/// least 1e-5; below 0.03 nm the index goes to that of air (three.js, Babylon.js, the Khronos
+/// least 1e-5; below 0.03 nm the film's index goes to 1 (three.js, Babylon.js, the Khronos
 /// viewer).
 ///
 /// The extension's listing gives the curves X, Y and Z the signs s of R, G and B; here a channel

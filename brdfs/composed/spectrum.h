@@ -12,7 +12,7 @@ namespace hshfit::brdfs {
 
 /// A grey BRDF for each of several wavelengths, as one spectral BRDF: channel c is f of line c.
 ///   laws, coverage   what all lines keep; where all are covered
-///   lobes, kinks     those of all lines, equal ones once; the tolerance is the largest
+///   lobes, kinks     of all lines, equal ones once; the tolerance is the largest of all lines'
 /// Lines are by ascending wavelengths in nm; `name` opens the BRDF again (a path).
 class Spectrum final : public Brdf, public HasKinkCurves, public HasSteps {
 public:

@@ -18,8 +18,8 @@ constexpr std::string_view plus = " + ", times = " * ";
 constexpr double mostWeight = 1e6;
 
 /// "0.5 * SPEC" in its parts, with or without spaces; `number` is empty if it does not begin with a
-/// number and '*'. Without spaces the rest begins with a letter, a digit or '/', unlike that of the
-/// pattern "2*.binary".
+/// number and '*'. Without spaces the rest has to begin with a letter, a digit or '/', so that the
+/// pattern "2*.binary" is no product.
 struct Factors {
     std::string_view number, rest;
     double weight = 1;

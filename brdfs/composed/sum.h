@@ -38,7 +38,7 @@ std::vector<WeightedSpec> splitSum(std::string_view spec, bool (*isWhole)(std::s
 ///   laws       what all terms keep; energy only if every term does and the weights add up to at
 ///              most 1, since no more is known of the albedos
 ///   coverage   where all terms are covered
-///   lobes, kinks, facts   those of all terms; the tolerance is the largest
+///   lobes, kinks, facts   of all terms; the tolerance is the largest of all terms'
 /// Throws UsageError for rgb with spectral terms and for spectra of different wavelengths.
 class Sum final : public Brdf,
                   public HasKinkCurves,

@@ -25,7 +25,7 @@ struct LaneMask {
     Mask m;
 };
 
-/// As many doubles as a register holds. Arithmetic is that of each lane by itself, so that a result
+/// As many doubles as a register holds. Arithmetic acts on each lane by itself, so that a result
 /// does not depend on the lane.
 struct Lanes {
     using Tag = hn::ScalableTag<double>;

@@ -58,7 +58,7 @@ HWY_INLINE double sin(double a) {
 HWY_INLINE double cos(double a) {
     return std::cos(a);
 }
-/// Of Lanes with those of lanes_angles.h.
+/// For Lanes, the sin and cos of the values are from lanes_angles.h.
 template <class V, int n>
 HWY_INLINE Slopes<V, n> sin(const Slopes<V, n>& a) {
     return Slopes<V, n>::chained(sin(a.value), cos(a.value), a);
