@@ -8,7 +8,7 @@
 
 namespace hshfit::brdfs {
 
-// Zeros of all samples before those of scans.
+// Zeros that all samples share stand before zeros of single scans.
 void InstrumentProblem::placeZeros() {
     const Instrument& instrument = readings_.instrument;
     for (const bool ofScan : {false, true}) {

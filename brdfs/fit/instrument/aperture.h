@@ -37,7 +37,7 @@ struct PatchNodes {
 /// 4 level^2 nodes over the part of the aperture above the horizon; of a point one, of weight 1. On
 /// a cone that the horizon does not cut, rings of equal azimuths about n at Gauss-Legendre nodes of
 /// 1 - cos of the angle to n, exact for polynomials of degree 4 level - 1 in the plane across n;
-/// else products of Gauss-Legendre rules whose ends are those of the cut, so that smooth functions
+/// else products of Gauss-Legendre rules that end where the horizon cuts, so that smooth functions
 /// converge exponentially.
 PatchNodes patchNodes(const Aperture& aperture, const Direction& nominal, std::size_t level);
 

@@ -7,9 +7,10 @@
 
 namespace hshfit::brdfs {
 
-/// The instrument after a fit: stated and fitted numbers alike. Errors of the fitted ones are those
-/// of FitResult::parameters named "offset", "dark", "stray", "incidence zero", "detector zero" and
-/// "scale N", N the number of the scan from 1 on; zeros of scans have its number too.
+/// The instrument after a fit: stated and fitted numbers alike. FitResult::parameters has the
+/// errors of the fitted numbers under the names "offset", "dark", "stray", "incidence zero",
+/// "detector zero" and "scale N", N the number of the scan from 1 on. The zero of a scan has its
+/// number too.
 struct FittedInstrument {
     Instrument instrument;             ///< as it was asked for
     std::vector<double> offset, dark;  ///< of each channel; empty: none

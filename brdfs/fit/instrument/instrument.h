@@ -58,10 +58,10 @@ struct Instrument {
 };
 
 /// An instrument in words: apertures and slit as parseAperture and parseSlit take them; "fit" or a
-/// number for offset, dark (with ":out", ":in" or ":both" behind it: its cosines; ASTM E2392
-/// divides by that of the scattered direction) and stray; "fit" or a width such as "2%" for the
-/// scale of each scan; degrees for the width of a zero, with ":scan" behind it for one for each
-/// scan. Empty: none.
+/// number for offset, dark and stray; "fit" or a width such as "2%" for the scale of each scan;
+/// degrees for the width of a zero, with ":scan" behind it for one for each scan. Behind dark,
+/// ":out", ":in" or ":both" names the cosines that readings were divided by (ASTM E2392 divides by
+/// the cosine of the scattered direction). Empty: none.
 struct InstrumentText {
     std::string source = {}, detector = {}, bandwidth = {}, offset = {}, dark = {}, stray = {},
                 scale = {}, incidenceZero = {}, detectorZero = {};

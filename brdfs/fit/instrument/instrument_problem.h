@@ -87,7 +87,8 @@ public:
     double zeroSquares(std::span<const double> x) const;
 
     ReadingRows rows(std::span<const double> x, bool derivatives) const;
-    /// With scales at their best: the Gauss-Newton matrix is that of the projected problem.
+    /// Scales have their best values for x, so that the Gauss-Newton matrix belongs to the problem
+    /// without them (variable projection).
     Equations equations(std::span<const double> x, bool derivatives) const;
     /// Expected readings: [channel * samples + k].
     std::vector<double> model(std::span<const double> x) const;

@@ -197,7 +197,7 @@ void addBootstrapOfReadings(const InstrumentProblem& problem, const std::vector<
     addBootstrap(refit, options.uncertainty, result);
 }
 
-/// The values of one channel's sum, from those of all parameters.
+/// Picks the values of one channel's sum from the values of all parameters.
 std::vector<double> ofChannel(const InstrumentProblem& problem, const std::vector<double>& values,
                               std::size_t c) {
     std::vector<double> own;

@@ -11,7 +11,7 @@ namespace hshfit::brdfs {
 
 /// The share with which wavelengths about the nominal one enter a reading, of area 1:
 ///     box       constant over its width
-///     triangle  falls to 0 at one width from the middle; that of a monochromator with equal slits
+///     triangle  falls to 0 at one width from the middle, as in a monochromator with equal slits
 ///     gauss     exp(-4 ln 2 (d / width)^2), cut at 3 widths
 struct Slit {
     enum class Shape { none, box, triangle, gauss };

@@ -12,10 +12,10 @@ namespace hshfit::brdfs {
 /// derivative, step^2, of lobes 0.001 wide are below 1e-4.
 constexpr double angleStep = 1e-5;
 
-/// Errors of the zeros of a goniometer's angles, radians, both in the plane of incidence (that of x
-/// at normal incidence): the light comes from `incidence` further from the normal than a sample
-/// states; the detector is `detector` further from it on the side of the mirror direction, and
-/// nearer to it on the side of the light.
+/// Errors of the zeros of a goniometer's angles, radians, both in the plane of incidence (the xz
+/// plane at normal incidence): the light comes from `incidence` further from the normal than a
+/// sample states; the detector is `detector` further from the normal on the side of the mirror
+/// direction, and nearer to it on the side of the light.
 struct AngleZeros {
     double incidence = 0, detector = 0;
 };
