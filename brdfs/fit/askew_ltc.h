@@ -27,7 +27,7 @@ struct LobeSamples {
 
 struct AskewFit {
     AskewLtc w;
-    /// (integral of |f cos - magnitude D|^3 over that of (f cos)^3)^(1/3): what is minimised.
+    /// The minimised error, (integral of |f cos - magnitude D|^3 / integral of (f cos)^3)^(1/3).
     double error = 0;
 };
 /// The matrix that minimises the cubed error from `start` by Ceres, with the magnitude held at the

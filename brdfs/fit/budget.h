@@ -12,7 +12,7 @@ struct BudgetRow {
     char type = 'B';           ///< 'A': from the scatter of the samples
     std::string distribution;  ///< "normal", "rectangular", "triangular" or "u-shaped"
     double standard = 0;       ///< standard uncertainty of the quantity, in `unit`
-    std::string unit;          ///< "1", "1/sr", "degrees", or that of the parameter (empty)
+    std::string unit;          ///< "1", "1/sr", "degrees"; empty: the parameter's unit
     double sensitivity = 0;    ///< of the parameter by the quantity, signed
     double contribution = 0;   ///< |sensitivity| standard, in the parameter's unit
     double share = 0;          ///< of the combined variance

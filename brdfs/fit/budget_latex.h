@@ -7,7 +7,7 @@
 namespace hshfit::brdfs {
 
 /// A budget as LaTeX that needs no package: a tabular for each parameter, with its result and
-/// expanded uncertainty below. Rules are those of latexTable.
+/// expanded uncertainty below. Rules are drawn as by latexTable.
 std::string latexBudget(const Budget& budget);
 
 }  // namespace hshfit::brdfs

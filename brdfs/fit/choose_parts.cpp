@@ -230,8 +230,8 @@ std::string holding(const std::string& spec, const HeldParameter& held) {
     return extended(spec, fmt::format("{}={}", held.name, held.value));
 }
 
-/// The parameters of the parts of a fit, then those of the base but its colours, which are never
-/// left open.
+/// The parameters of the parts of a fit, then the parameters of the base except its colours, which
+/// are always fitted.
 std::vector<std::string_view> heldInTurn(const Model& model,
                                          const std::vector<std::string>& parts) {
     std::vector<std::string_view> keys, ofParts;

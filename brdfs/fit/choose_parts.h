@@ -57,14 +57,14 @@ struct PartOptions {
     /// A part is worth it if it lowers the held-out loss by this share. Folds of the same data
     /// differ by less. A parameter of a part is fitted if it lowers the loss by as much.
     double leastGain = 0.02;
-    /// Of pixels: a loss that nobody sees, a twentieth of a unit of L*, is no reason for a part.
+    /// For pixels: a loss that nobody sees, a twentieth of a unit of L*, is no reason for a part.
     double unseen = 5e-4;
-    /// Of pixels, a thin film is tried where the hue of f is off by as much, as the loss maps RGB
-    /// (root mean square): other parts have no colours that change with the directions. Of other
-    /// samples, whose noise differs between channels, it is not.
+    /// For pixels, a thin film is tried where the hue of f is off by as much, as the loss maps RGB
+    /// (root mean square): other parts have no colours that change with the directions. For other
+    /// samples no film is tried, because their noise differs between channels.
     double leastHue = 0.01;
-    /// Samples that the search draws, of others than pixels, which have FitSamples::fewer; the fit
-    /// that follows takes all.
+    /// Samples that the search draws; the fit that follows takes all. For pixels the search takes
+    /// FitSamples::fewer instead.
     std::size_t samples = 4096;
     std::function<void(std::size_t, std::size_t)> progress = {};
 };

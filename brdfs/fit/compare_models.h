@@ -14,11 +14,12 @@ struct ModelRank {
     FitResult fit;
     /// As FitResult::loss, of directions that the fit did not see: five fits, each to four fifths.
     double heldOut = 0;
-    /// The data do not tell it from the first model: the squared residuals at those directions
-    /// differ from those of the least held-out error by no more than their spread over scans (or
-    /// rings) explains (Student's t, 5 %). Only for samples with stated uncertainties or scans.
+    /// The data do not tell it from the first model: at the held-out directions, its squared
+    /// residuals differ from the squared residuals of the model with the least held-out error by no
+    /// more than their spread over scans (or rings) explains (Student's t, 5 %). Only for samples
+    /// with stated uncertainties or scans.
     bool tied = false;
-    bool simplest = false;  ///< first by its few parameters: of those tied, not the least held out
+    bool simplest = false;  ///< first as the tied model with the fewest parameters
     std::string failure;    ///< why there is no fit; then last
 };
 

@@ -66,9 +66,9 @@ private:
 std::string sumAtWavelength(std::string_view sum, double nanometres);
 
 /// The least-squares problem of a spectrum in the coefficients of a DispersedModel: the sum of the
-/// FitProblems of its wavelengths, each linearised by the chain rule. With a slit values are those
-/// of readings, mixed among the wavelengths by `mix` (slitMatrix); the loss is then linear, without
-/// a robust kernel, and problemAt is that without the slit.
+/// FitProblems of its wavelengths, each linearised by the chain rule. With a slit the values are
+/// readings, mixed among the wavelengths by `mix` (slitMatrix); the loss is then linear, without a
+/// robust kernel, and problemAt gives the problems without the slit.
 class DispersedProblem {
 public:
     DispersedProblem(const FitSamples& samples, const DispersedModel& model, Loss::Kind loss,

@@ -16,12 +16,13 @@ bool namesMetals(std::string_view model);
 ///
 /// Starts are the fits of single wavelengths, put under the laws, and the shapes of the first, the
 /// middle and the last of them for all; the better two are searched from, over all
-/// coefficients. Errors, covariance, chi-square and influence are those of fit(), in the
-/// coefficients of the laws, and by the chain rule in the parameters that are reported. Bootstrap
-/// draws start at the minimum.
+/// coefficients. Errors, covariance, chi-square and influence are computed as by fit(), in the
+/// coefficients of the laws, and carried by the chain rule to the parameters that are reported.
+/// Bootstrap draws start at the minimum.
 ///
 /// Values are averaged over the instrument's apertures and slit, as in fitWithInstrument, and
-/// a stated offset and dark signal are taken away; with more of it, it throws UsageError.
+/// a stated offset and dark signal are taken away; other terms of the instrument are refused with
+/// UsageError.
 ///
 /// Throws UsageError for data without wavelengths, for laws that the model does not take, and with
 /// perChannel or a profile; NumericError as fit().

@@ -15,8 +15,8 @@ nlohmann::ordered_json dispersionJson(const FitResult& result);
 
 /// Opens a fit with laws over the wavelength at wavelengths of its band, "450/550/650" or
 /// "FIRST:LAST:STEP", from the text of its preset. `where` starts every message. Throws UsageError
-/// for wavelengths beyond the band, or between those of the data where a parameter has no law, and
-/// for a preset without laws; InputError for invalid content.
+/// for wavelengths beyond the band, for wavelengths between the data's where a parameter has no
+/// law, and for a preset without laws; InputError for invalid content.
 std::unique_ptr<Brdf> openDispersed(std::string_view text, const std::string& where,
                                     std::string_view wavelengths);
 

@@ -89,11 +89,11 @@ struct FitSamples {
         const double sigma = sigmas[channel * size() + k];
         return weights[k] / (sigma * sigma);
     }
-    /// Those at `indices`, weights again of mean 1.
+    /// The samples at `indices`, with weights of mean 1 again.
     FitSamples subset(const std::vector<std::size_t>& indices) const;
-    /// `count` of them, one from each of as many equal runs, at places that `seed` draws.
+    /// `count` of the samples, one from each of as many equal runs, at places that `seed` draws.
     FitSamples drawn(std::size_t count, std::uint64_t seed) const;
-    /// One channel of them.
+    /// The samples of one channel.
     FitSamples channel(std::size_t c) const;
 };
 

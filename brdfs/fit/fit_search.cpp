@@ -250,8 +250,9 @@ std::vector<Minimum> coarseMinima(const FitProblem& problem, bool linear,
     return candidates;
 }
 
-/// Differences of costs that searches on few samples leave undecided, relative. Along a level
-/// valley those of pixels end up to 3e-4 apart, and each would be followed to the same end.
+/// Relative differences of costs that searches on few samples leave undecided. Along a level
+/// valley, searches on pixels end with costs up to 3e-4 apart, and each of them would be followed
+/// to the same minimum.
 constexpr double undecidedOfCells = 1e-4, undecidedOfPixels = 1e-3;
 
 /// The first few that differ by more than a search leaves undecided.

@@ -22,8 +22,8 @@ struct FittedChannel {
     std::size_t channel = 0;  ///< of the fit
 };
 
-/// The coefficients of a fit are its parameters, or those of a law over wavelength from which the
-/// values at each channel follow.
+/// The coefficients of a fit are its parameters, or else the coefficients of laws over wavelength
+/// from which the parameters in each channel follow.
 struct FittedPoint {
     bool isotropic = true;  ///< as the samples were
     std::vector<FittedChannel> channels;

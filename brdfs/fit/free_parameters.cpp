@@ -32,9 +32,9 @@ const FitRange* rangeOf(const Parameter& parameter, const Model& model, const Pa
     return found == parameter.fit.end() ? nullptr : &*found;
 }
 
-/// Whether it is an index of refraction of a standard material. Fits keep it within the range of
-/// their starts: beyond that of usual dielectrics it is a scale of the lobe, of which there are
-/// others.
+/// Whether it is an index of refraction of a standard material. Fits keep the index within the
+/// range of their starts, the indices of usual dielectrics: beyond it the index only scales the
+/// lobe, as other parameters do.
 bool isIndex(const Model& model, const Parameter& parameter) {
     return !model.parts.empty() && parameter.min == 1;
 }

@@ -35,7 +35,7 @@ GaussianValue evaluateLobe(GaussianKind kind, const GaussianLobe& lobe, double t
 struct GaussianElevation {
     double theta = 0;  ///< of wo, radians
     std::vector<GaussianLobe> lobes = {};
-    double error = 0;  ///< root of the weighted integral of (f - g)^2 over that of f^2
+    double error = 0;  ///< root of the ratio of weighted integrals, (f - g)^2 to f^2
     double albedo = 0, fittedAlbedo = 0;  ///< of f and of g, channels averaged
     bool converged = false;
 };

@@ -14,8 +14,8 @@ std::string latexText(std::string_view text);
 /// share, with standard and expanded uncertainties, k, degrees of freedom and units, and one with a
 /// row for each channel or wavelength; below, the route of the uncertainties, correlations, terms
 /// of the instrument, N, chi-square per degree of freedom with its probability (or the root mean
-/// square residual), the model, the data and the weights. \toprule, \midrule and \bottomrule are
-/// those of booktabs where it is loaded, and else \hline.
+/// square residual), the model, the data and the weights. \toprule, \midrule and \bottomrule
+/// come from booktabs where it is loaded, and else are \hline.
 std::string latexTable(const FitReport& report);
 
 }  // namespace hshfit::brdfs

@@ -10,7 +10,7 @@ struct LtcLobe {
     Ltc ltc;
     double magnitude = 0;  ///< the integral of f cos(theta_i): what to multiply the density by
     double fresnel = 0;    ///< the same with the factor (1 - cos theta_d)^5, Schlick's
-    /// (integral of |f cos - magnitude D|^3 over that of (f cos)^3)^(1/3): what is minimised.
+    /// The minimised error, (integral of |f cos - magnitude D|^3 / integral of (f cos)^3)^(1/3).
     double error = 0;
     /// Half the integral of |f cos - magnitude D| over the magnitude: the share that is misplaced.
     double misplaced = 0;

@@ -47,7 +47,7 @@ namespace {
 /// Longitudes, from z towards x, between which the cosine and cos(theta_i) do not change sign, but
 /// for those where both are negative.
 std::array<double, 4> sectors(const Ltc& around) {
-    const double up = std::atan2(-around.c, around.a);  // that of the surface's normal
+    const double up = std::atan2(-around.c, around.a);  // longitude of the surface's normal
     std::array<double, 4> ends{-pi / 2, pi / 2, up - pi / 2, up + pi / 2};
     std::ranges::sort(ends);
     return ends;

@@ -26,7 +26,7 @@ struct LtcNodes {
     std::vector<Direction> cosines;  ///< of the sphere of the cosine
     std::vector<Direction> wi;       ///< where `around` takes them
     std::vector<double> weights;     ///< d omega of wi, both halves counted
-    std::vector<double> stretches;   ///< d omega of wi over that of the cosine
+    std::vector<double> stretches;   ///< d omega of wi / d omega on the sphere of the cosine
     std::vector<double> values;      ///< f cos(theta_i)
 
     /// Throws NumericError where f is not finite.

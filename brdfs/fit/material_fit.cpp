@@ -60,7 +60,7 @@ void addChanges(const FitProblem& problem, const std::vector<double>& x,
         for (std::size_t i = 0; i < x.size(); ++i) part.changes.back()[i] *= slope[i];
     }
     constexpr double known = std::numeric_limits<double>::infinity();
-    // Without freedom, errors are those of stated uncertainties, or of very many values.
+    // Without `freedom`, errors follow from stated uncertainties or from very many values.
     part.degrees.assign(x.size(), known);
     if (!part.freedom) return;
     part.degrees = part.freedom->degrees(Eigen::MatrixXd::Identity(n, n));

@@ -22,8 +22,9 @@ struct MinimiseOptions {
     /// the gradient: where residuals are large, Gauss-Newton's converges by the hundred. A cost
     /// that falls by less than 1e-7 of itself in ten iterations counts as converged then.
     bool curvature = true;
-    /// The same sum over a part of its samples: what Gauss-Newton's matrix lacks is that of this
-    /// one, from the first iteration on, for the price of fewer samples. Null: of all samples.
+    /// The same sum over a part of its samples. The second derivatives that Gauss-Newton's matrix
+    /// lacks are then taken from this sum, from the first iteration on, for the price of fewer
+    /// samples. Null: from all samples.
     const SumOfSquares* fewer = nullptr;
     TimeLimit limit = {};  ///< the search ends with it, not converged
 };

@@ -11,8 +11,9 @@ namespace hshfit::brdfs {
 struct NodeSums {
     std::vector<double> wiX, wiY, wiZ;
     std::vector<Direction> wo;
-    /// Nodes with wo in the xz plane whose factors contain those of wi's mirror image in it: f is
-    /// the mean of both, which are the same for models of isotropic materials.
+    /// Nodes that stand for wi and for its mirror image in the xz plane, in which wo lies: the
+    /// factors are of both, and f is the mean of both values. For models of isotropic materials the
+    /// two values are equal.
     std::vector<bool> mirrored;
     /// One sum: over the nodes [firstNode, firstNode + nodes) with factors [firstFactor, …). Sums
     /// stand in the order of their nodes; those over the same nodes stand together.

@@ -27,9 +27,9 @@ struct PictureSampleOptions {
 /// pictureLights(): samples of origin `pixels`,
 ///     value = exposure times the integral of L(wi) f(wi, wo) cos(theta_i), white is 1,
 /// with the exposure of each light at which 95 % of its pixels have their largest channel at or
-/// below `shownAsWhite` of white (rgb_picture.h), at most twelve stops above that of the brightest
-/// pixel, and as weights the areas of the pixels, the same
-/// in sum for each light. The pixel that mirrors parallel light weighs a fiftieth of its sphere.
+/// below `shownAsWhite` of white (rgb_picture.h) and the brightest is at most twelve stops above
+/// that. Weights are the areas of the pixels, scaled to the same sum for each light. The pixel that
+/// mirrors parallel light weighs a fiftieth of its sphere.
 /// Lights with an extent are integrated by gridFor with the lobes of f, at pixels on rings of equal
 /// area; under parallel light half of the pixels are spread evenly, the others about the highlight,
 /// with weights by the balance heuristic, so that lobes of any width are seen.

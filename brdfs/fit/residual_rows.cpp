@@ -86,7 +86,8 @@ double aspecularAngle(const FitSamples& samples, std::size_t k) {
 
 void writeResidualRows(const FitSamples& samples, const FitResult& result, Loss::Kind loss,
                        const std::function<void(std::string_view)>& write) {
-    // Models of fits with terms of the instrument are readings; errors are those of f.
+    // With terms of the instrument, `model` is a reading; predicted errors are of f, so that none
+    // are written.
     const bool predicted = !result.instrument && !result.point.channels.empty();
     const Prediction prediction = predicted ? predict(result, samples) : Prediction{};
     write(fmt::format(

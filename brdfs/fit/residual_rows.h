@@ -20,8 +20,8 @@ namespace hshfit::brdfs {
 ///     standardised                     standardisedResiduals
 ///     standard_error                   of the model there, 1/sr (prediction.h)
 ///     bootstrap_error                  the same by fits to resampled data, where there are any
-/// `loss` is that of the fit. `write` gets the text line by line. The result has to have its
-/// `uncertainty`.
+/// `loss` is the loss that the fit minimised. `write` gets the text line by line. The result has to
+/// have its `uncertainty`.
 void writeResidualRows(const FitSamples& samples, const FitResult& result, Loss::Kind loss,
                        const std::function<void(std::string_view)>& write);
 

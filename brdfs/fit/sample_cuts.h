@@ -35,11 +35,12 @@ struct SampleCuts {
 
 /// The cuts with three samples or more. Directions count as one within 0.5 degrees of elevation and
 /// 1 degree of azimuth (isotropic data: of any azimuth), and as in the plane within 1 degree. The
-/// fixed direction is the one of which cuts hold more; without cuts of either, retroreflection.
+/// fixed direction is the one whose cuts hold more samples; without cuts of either,
+/// retroreflection.
 SampleCuts cutsOf(const FitSamples& samples);
 
-/// Those to draw: "auto", at most six from the first to the last elevation; "all"; or elevations in
-/// degrees with commas, each within 1 degree of a measured one. Throws UsageError.
+/// The cuts to draw: "auto", at most six from the first to the last elevation; "all"; or elevations
+/// in degrees with commas, each within 1 degree of a measured one. Throws UsageError.
 SampleCuts chosenCuts(SampleCuts cuts, const std::string& panels);
 /// Throws UsageError unless `panels` is one of these, whatever was measured.
 void checkPanels(const std::string& panels);

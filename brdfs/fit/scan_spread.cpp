@@ -31,9 +31,10 @@ double satterthwaite(double trace, double squares) {
 
 }  // namespace
 
-// With M = L L^T, q = L^T A L of a scan and b = L^T c, the variance of c is that of the terms
-// v^T L^T g, v = (1 - q)^-1 b. Their covariance among scans is diag(v^T q v) - Y^T Y, with columns
-// y = q v of Y.
+// For a combination c of the parameters (a row of `of`), M = L L^T the inverse, A and g the matrix
+// and gradient of a scan, q = L^T A L and b = L^T c. The variance of c is estimated from a term
+// v^T L^T g of each scan, v = (1 - q)^-1 b. The covariance of these terms is diag(v^T q v) - Y^T Y,
+// where a scan has the column y = q v of Y.
 std::vector<double> scanDegrees(const std::vector<ScanSums>& scans, const Eigen::MatrixXd& inverse,
                                 const Eigen::MatrixXd& of) {
     const Eigen::MatrixXd root = rootOf(inverse);

@@ -27,7 +27,7 @@ std::optional<std::size_t> nodeOf(const CorrelationBlock& block, double value) {
 double scatteringAngle(const FitSamples& samples, std::size_t k) {
     const Direction& wo = samples.wo[k];
     const double polar = degrees(std::acos(std::clamp(wo.z, -1.0, 1.0)));
-    constexpr double steep = 1e-4;  // normal incidence, whose plane is that of x
+    constexpr double steep = 1e-4;  // normal incidence, whose plane is the xz plane
     const bool normal = std::hypot(samples.wiX[k], samples.wiY[k]) < steep;
     const double towards = normal ? wo.x : wo.x * samples.wiX[k] + wo.y * samples.wiY[k];
     return towards > 0 ? -polar : polar;

@@ -25,8 +25,8 @@ Eigen::MatrixXd correlationOfChannels(const FitSamples& samples);
 double correlationOfSamples(const FitSamples& samples, std::size_t j, std::size_t k);
 /// Indices of the samples whose errors are correlated with one another.
 std::vector<std::vector<std::size_t>> correlatedBlocks(const FitSamples& samples);
-/// Throws InputError for nodes that the file of the correlations lacks, and UsageError where it
-/// states those of other data.
+/// Throws InputError where the file of the correlations lacks a node that the samples need, or has
+/// another number of rows than a scan has samples.
 void checkCorrelations(const FitSamples& samples);
 
 /// Makes values with correlated errors, over their uncertainties, into independent ones: C = D R D
