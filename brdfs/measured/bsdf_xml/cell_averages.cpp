@@ -148,8 +148,9 @@ private:
     int sideOf(int round) const {
         return static_cast<int>(std::ceil(2 * options_.firstPoints * std::pow(1.5, round + 1)));
     }
-    /// Directions of a cell: those of a third Gauss rule, then of a fourth and so on where rules
-    /// converge, else scattered points, four times the pairs of directions in each round.
+    /// The number of directions in a cell. Where Gauss rules converge, it is the number of a third
+    /// rule's points, then of a fourth's and so on; elsewhere points are scattered, with four times
+    /// as many pairs of directions in each round.
     std::size_t pointsOf(const OpenPair& pair, int round) const {
         if (round > 0 && smooth_[pair.place] == 0)
             return static_cast<std::size_t>(16 * options_.firstPoints) << (round - 1);

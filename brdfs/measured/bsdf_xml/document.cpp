@@ -56,7 +56,7 @@ BsdfDocument::BsdfDocument(std::span<const unsigned char> bytes, std::string whe
     for (std::size_t i = 0; i < bytes.size(); ++i)
         if (bytes[i] == '\n') lineEnds_.push_back(i);
     check(bytes);
-    // The bytes are taken as they are, so that offsets are those of the file.
+    // The bytes are taken as they are, so that offsets are offsets in the file.
     const pugi::xml_parse_result result = parsed_->xml.load_buffer(
         bytes.data(), bytes.size(), pugi::parse_cdata | pugi::parse_escapes, pugi::encoding_utf8);
     if (!result) {

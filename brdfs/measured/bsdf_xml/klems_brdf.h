@@ -15,9 +15,9 @@ namespace hshfit::brdfs {
 
 /// Reflection or transmission in a matrix of patch pairs (Klems 1994): f is constant for wi in one
 /// patch of the incident basis and wo in one of the outgoing basis. With (x, y) in the file's plane
-/// (see BsdfSelection), the outgoing patch is that of (x, y) of wo, and the incident one that of
-/// (-x, -y) of wi, towards which the light goes: a mirror fills the diagonal,
-/// and so does a clear pane, wo of a transmission being mirrored at the surface.
+/// (see BsdfSelection), the outgoing patch contains (x, y) of wo, and the incident patch (-x, -y)
+/// of wi, the direction towards which the light goes: a mirror fills the diagonal, and so does a
+/// clear pane, because wo of a transmission is mirrored at the surface.
 ///
 /// Negative values are taken as 0, as in Radiance. So are NaN and infinite values, for which
 /// checkIntact() throws InputError. f is 0 beyond a basis that ends above the

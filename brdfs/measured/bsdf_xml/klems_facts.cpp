@@ -70,8 +70,8 @@ bool KlemsBrdf::dependsOnRingsOnly() const {
     return true;
 }
 
-// Reciprocity, f(wi, wo) = f(wo, wi), exchanges wi and wo. Patches are those of wo and -wi, so
-// that the matrix is transposed and both patches are turned by 180 degrees.
+// Reciprocity, f(wi, wo) = f(wo, wi), exchanges wi and wo. Patches contain wo and -wi, so that the
+// exchange transposes the matrix and turns both patches by 180 degrees.
 void KlemsBrdf::findLaws() {
     laws_.reciprocal = !isTransmission(selection_.side) && movable() && sameUnder(1, 1, true);
     laws_.mirrorSymmetric = incident_.symmetric() && outgoing_.symmetric() &&

@@ -39,8 +39,8 @@ std::vector<double> cutAt(double low, double high, const std::vector<double>& cu
     return ends;
 }
 
-/// Patches as (sign x, sign y) of directions: -1 for wi, whose patch is that of the direction in
-/// which the light goes.
+/// Patches, which contain (sign x, sign y) of directions. The sign is -1 for wi, because its patch
+/// contains the direction in which the light goes.
 class PatchCells {
 public:
     PatchCells(const AngleBasis& basis, BsdfSide side, int sign, PatchSteps steps)

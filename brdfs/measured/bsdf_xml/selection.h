@@ -11,9 +11,9 @@
 
 namespace hshfit::brdfs {
 
-/// The kinds of blocks as the file names them, `front` and `back` for reflections. The side is that
-/// of the incident light. Radiance exchanges the words: its front, towards +z and the room, is the
-/// file's back.
+/// The kinds of blocks as the file names them, `front` and `back` for reflections. The side is the
+/// one that the light comes from. Radiance exchanges the words: its front, towards +z and the room,
+/// is the file's back.
 enum class BsdfSide { front, back, transmissionFront, transmissionBack };
 
 /// "Reflection Front", …, as in files.

@@ -56,8 +56,8 @@ public:
     std::vector<double> averagesOverFirst(int over) const;
 
     /// The asymmetry of the function when dimension i takes the place of `from[i]` and is reversed
-    /// (u -> 1 - u) where `flipped[i]`: the integral of the absolute difference over that of the
-    /// function. 0: it is exactly symmetric.
+    /// (u -> 1 - u) where `flipped[i]`: the integral of the absolute difference relative to the
+    /// integral of the function. 0: it is exactly symmetric.
     double asymmetry(const std::array<int, 4>& from, const std::array<bool, 4>& flipped) const;
 
 private:

@@ -55,9 +55,9 @@ public:
     /// the outgoing square, for each cell of the finest grid of incident coordinates, first
     /// coordinate fastest. Rank 3: from grazing (first) to normal incidence.
     std::vector<double> directionalReflectances() const;
-    /// Takes note of the reflection of light from the same side: conservation of energy is then
-    /// that of both together. False, and nothing changes, for a reflection over other cells or
-    /// in other channels.
+    /// Takes note of the reflection of light from the same side: conservation of energy is then a
+    /// law of both together. False, and nothing changes, for a reflection over other cells or in
+    /// other channels.
     bool addReflection(const TreeBrdf& reflection);
     void addFact(Fact fact) { selection_.facts.push_back(std::move(fact)); }
 

@@ -35,8 +35,8 @@ struct BsdfPart {
     BsdfSide side;
     std::shared_ptr<const Brdf> brdf;
 };
-/// The blocks that `side` asks for: one of `brdf`, or with "all" those of the file that `brdf` was
-/// opened from, each opened by its own specification. `brdf` has to outlive them. Throws
+/// The blocks that `side` asks for: one of `brdf`, or with "all" every block of the file that
+/// `brdf` was opened from, each opened by its own specification. `brdf` has to outlive them. Throws
 /// UsageError where a reflection would be written as a transmission or the reverse, and where
 /// `brdf` is of no such file.
 std::vector<BsdfPart> partsOf(const Brdf& brdf, const Parameters& parameters);
