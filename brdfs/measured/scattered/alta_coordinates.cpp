@@ -39,7 +39,7 @@ std::array<double, 4> rusinkiewicz(const Direction& wi, const Direction& wo) {
             across > 1e-12 ? wrapped(std::atan2(d.y, d.x)) : 0};
 }
 
-/// The azimuth of wo against that of wi.
+/// The azimuth from wi to wo.
 double turn(const Direction& wi, const Direction& wo) {
     const double cross = wi.x * wo.y - wi.y * wo.x, along = wi.x * wo.x + wi.y * wo.y;
     return cross == 0 && along == 0 ? 0 : std::atan2(cross, along);

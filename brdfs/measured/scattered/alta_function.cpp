@@ -310,8 +310,8 @@ private:
         return term;
     }
 
-    /// #MIN, #MAX, #NP, #NQ and #BASIS in any order, then terms; #NP and #NQ may stand before those
-    /// of each channel.
+    /// #MIN, #MAX, #NP, #NQ and #BASIS in any order, then terms; #NP and #NQ may stand again before
+    /// the terms of each channel.
     bool readRational() {
         const AltaCoordinates& input = rationalInput();
         std::vector<double> min, max;

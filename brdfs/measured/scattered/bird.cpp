@@ -24,7 +24,7 @@ using Stokes = std::array<double, 3>;  ///< S1, S2, S3 of light with S0 = 1
 constexpr int deepestBird = 24;
 constexpr std::size_t mostBirdBytes = std::size_t{1} << 28;
 
-/// The values of one variable; their number has to be that of BRDF's.
+/// The values of one variable, which has to have as many as the variable BRDF.
 std::vector<double> valuesOf(const JsonFields& variable, std::size_t count) {
     std::vector<double> values = variable.numbers("values");
     if (values.size() != count)

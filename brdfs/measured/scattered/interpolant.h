@@ -12,9 +12,10 @@ namespace hshfit::brdfs {
 /// with linear nodal functions (Franke & Nielson 1980, 10.1002/nme.1620151110; Renka 1988,
 /// 10.1145/45054.45055):
 ///     f(x) = sum_k w_k Q_k(x) / sum_k w_k,      w_k = (max(0, R - d_k) / (R d_k))^2
-/// over the nearest nodes (3, 7, 12 or 20 for 1 to 4 dimensions), d_k their distances and R that of
-/// the next one. Q_k goes through node k. Its slope is a weighted least-squares fit to the
-/// node's neighbours, and it is clamped between the least and the greatest value among them.
+/// over the nearest nodes (3, 7, 12 or 20 for 1 to 4 dimensions); d_k is the distance of node k, R
+/// the distance of the next node. Q_k goes through node k. Its slope is a weighted least-squares
+/// fit to the node's neighbours, and it is clamped between the least and the greatest value among
+/// them.
 ///
 /// f is continuous, interpolates the nodes, and stays in the range of the neighbours' values. It
 /// reproduces linear data but for the effect of the clamp: below 1 % of the data's range between

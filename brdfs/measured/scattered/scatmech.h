@@ -19,8 +19,8 @@ double zernikeRadial(int n, int l, double r);
 ///     f = sum a lambda^p N_{nm}^l (R_n^l(r_i) R_m^l(r_o) + R_m^l(r_i) R_n^l(r_o)) cos l (phi_o -
 ///     phi_i),    r = sqrt(2) sin(theta/2),   N = sqrt((n + 1)(m + 1) / D) / (2 pi)
 /// D = 4 for n = 0 or (n = m and l = 0), 2 for n = m or l = 0, else 1; lambda in um. Values below 0
-/// count as 0. Tables may be normalised to unit reflectance, as that of PTFE is: `scale` is a
-/// factor.
+/// count as 0. Tables may be normalised to unit reflectance, as the table of PTFE is; `scale` then
+/// multiplies f.
 class ZernikeExpansion : public Brdf {
 public:
     /// One line of the file with i = j = 1.

@@ -40,7 +40,7 @@ ZernikeMueller::ZernikeMueller(ZernikeExpansion reflectance, const std::vector<R
         const bool has = std::ranges::any_of(elements_.places(k), [&](std::size_t place) {
             return std::ranges::find(products_, place, &Product::place) != products_.end();
         });
-        // f_11 is that of the expansion, whose rows are not among these.
+        // f_11 is the expansion's own, whose rows are not among these.
         if (!has && elements_.names()[k] != "m00")
             throw InputError(fmt::format("{}: the file has no row of {} (i <= j); name the others",
                                          name_, elements_.names()[k]));

@@ -18,9 +18,10 @@ namespace hshfit::brdfs {
 ///     K_n^k(theta, phi) = sqrt((n + 1) / pi) R_n^|k|(sqrt(2) sin(theta/2)) az_k(phi)
 /// az_k = cos k phi for k > 0, 1/sqrt(2) for 0, -sin k phi below; (i) and (r) are the directions of
 /// wi and wo. By reciprocity f_ji has (i) and (r) exchanged, and the other sign for 31, 32 and 43.
-/// Both azimuths are counted from the plane of incidence, that of wi being pi, at which published
-/// tables were measured; the axes of Stokes vectors are x, in that plane, and y, carried along to
-/// the direction of the light ("xyxy" in SCATMECH). The BRDF is isotropic.
+/// Azimuths are counted from the side of the plane of incidence that is away from wi, so that wi
+/// has pi: published tables were measured like this. The axes of Stokes vectors are x, in that
+/// plane, and y, carried along to the direction of the light ("xyxy" in SCATMECH). The BRDF is
+/// isotropic.
 class ZernikeMueller : public Brdf {
 public:
     /// A row of the table, with i and j from 0.

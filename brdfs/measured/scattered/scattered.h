@@ -107,7 +107,7 @@ private:
     std::unique_ptr<TableInterpolant> onTables_;  ///< null for samples in no tables
 };
 
-/// The measured pairs behind a BRDF, without those of the interpolation between them.
+/// The measured pairs behind a BRDF, without what it interpolates between them.
 struct MeasuredPairs {
     Samples samples;  ///< in the channels of the BRDF
     Laws laws;        ///< of the BRDF

@@ -21,8 +21,8 @@ constexpr std::string_view anisotropicMark = "OPTIS - Anisotropic BSDF surface f
 struct SpeosTable {
     std::vector<double> thetas, phis, values;
     std::vector<std::size_t> lines;  ///< of the rows
-    /// Whether the polar angles of the file go from 90 to 180 degrees; `thetas` are those of the
-    /// directions mirrored at the surface, ascending likewise.
+    /// Whether the polar angles of the file go from 90 to 180 degrees; `thetas` then belong to the
+    /// directions mirrored at the surface, and ascend likewise.
     bool through = false;
 };
 

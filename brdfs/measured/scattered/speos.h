@@ -22,8 +22,8 @@ namespace hshfit::brdfs {
 /// and for type 0 divided by cos(theta). The anisotropy vector is the tangent +x: at an anisotropy
 /// angle of p the light comes from azimuth 180 - p degrees. A spectrum of one percentage is grey.
 ///
-/// Polar angles from 90 to 180 degrees tell tables of transmission from those of reflection, in
-/// whatever order they come. `side`: "reflection-front", "transmission-front" or, by the user's
+/// Tables whose polar angles go from 90 to 180 degrees are of transmission, others of reflection,
+/// in whatever order they come. `side`: "reflection-front", "transmission-front" or, by the user's
 /// word, "transmission-back"; "auto": reflection, or transmission where there is no other. Entries
 /// of 0 in all wavelengths are directions that were not measured, unless `zerosMeasured`. Throws
 /// InputError, with `where` and the line, for other content and binary files.

@@ -26,7 +26,7 @@ namespace hshfit::brdfs {
 ///
 /// With ScatterType BTDF, angles are about the direction of direct transmission. Mirrored at the
 /// surface (hshfit/brdf/transmission.h) that is the specular direction, so that places are the
-/// same; the fact `scatter_type` says which it is. Incidence is that of a pane between equal media.
+/// same; the fact `scatter_type` says which it is. Incidence is as for a pane between equal media.
 Samples readZemax(std::string_view text, const std::string& where, bool zerosMeasured = false);
 
 /// The directions of a place in such a table, in degrees.
