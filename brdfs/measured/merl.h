@@ -27,7 +27,7 @@ enum class MerlInterpolation {
 /// InputError naming one that was read. Indices are accurate to 1e-9.
 class MerlBrdf : public MeasuredBrdf, public HasCells {
 public:
-    /// Throws InputError if the dimensions or the size of the file are not those of a MERL file.
+    /// Throws InputError if the file has other dimensions or another size than MERL files have.
     explicit MerlBrdf(const std::string& path,
                       MerlInterpolation interpolation = MerlInterpolation::linear);
 

@@ -301,7 +301,7 @@ const Format& pbsdfFormat() {
         .extension = ".pbsdf",
         .recognises =
             [](std::span<const unsigned char> head, std::uint64_t) {
-                // The container is that of rgl; the names in the table of contents tell them apart.
+                // rgl has the same container; the names in the table of contents tell them apart.
                 const std::string_view text(reinterpret_cast<const char*>(head.data()),
                                             head.size());
                 return text.starts_with(TensorFile::magic) &&

@@ -23,7 +23,7 @@ namespace hshfit::brdfs {
 /// constant beyond. Files with empty angles (shape 0 x n) are read as evenly spaced: theta from
 /// 0 to 90, phi_d from -180 to 180 degrees. Interpolation leaves out nodes that lack one of the
 /// elements that are read, or whose M00 is 0 as in cells below the horizon; without any of the
-/// eight nodes f is 0. Negative values of M00 become 0. The degree of polarisation is that of the
+/// eight nodes f is 0. Negative values of M00 become 0. The degree of polarisation follows from
 /// interpolated elements. Reciprocity does not hold in measured files.
 class PbsdfBrdf : public MeasuredBrdf {
 public:

@@ -18,8 +18,8 @@ HWY_EXPORT(evalRgl);
 
 constexpr std::size_t blockSize = 64;
 
-/// The alpha of the GGX distribution whose half width at half maximum is that of the normals'
-/// density, averaged over azimuth.
+/// The alpha of the GGX distribution with the same half width at half maximum as the normals'
+/// density has, averaged over azimuth.
 double widthOf(const Plane& ndf) {
     std::vector<double> profile(ndf.columns, 0.0);
     for (std::size_t i = 0; i < ndf.values.size(); ++i) profile[i % ndf.columns] += ndf.values[i];

@@ -45,7 +45,7 @@ struct RglTables {
         double factor = 1;
     };
     Node node(std::size_t slice, std::size_t row, std::size_t column) const;
-    /// The factor of a node with these directions, wi being that of the slice.
+    /// The factor of a node with these directions; wi is the incident direction of the slice.
     double factor(std::size_t slice, const Direction& wi, const Direction& wo) const;
     double factorAt(double u, double v, double thetaIncident, double phiIncident) const;
 };

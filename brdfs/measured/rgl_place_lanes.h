@@ -84,7 +84,7 @@ HWY_INLINE void place(const RglCall& call, Lanes x, Lanes y, Lanes z, RglBlock& 
     store(sqrt(2 / pi * thetaHalf), block.uHalf + k);
     if (call.elevations)
         locate(tables.incident.theta, thetaIncident, block.thetaNode + k, block.thetaFraction + k);
-    // The azimuth of h, relative to that of wi where the tables turn with wi.
+    // The azimuth of h, relative to the azimuth of wi where the tables turn with wi.
     const bool relative = tables.reduction == 0;
     const Lanes sine = relative ? d.ix * d.hy - d.iy * d.hx : d.hy;
     const Lanes cosine = relative ? d.ix * d.hx + d.iy * d.hy : d.hx;

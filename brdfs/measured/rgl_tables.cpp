@@ -66,8 +66,8 @@ VisibleNormals::VisibleNormals(const std::vector<float>& densities, std::size_t 
     }
 }
 
-// All sums over slices are linear, so that the interpolated integrals are exactly those of the
-// interpolated density.
+// All sums over slices are linear, so that interpolating the integrals gives exactly the integrals
+// of the interpolated density.
 VisibleNormals::Point VisibleNormals::invert(double u, double v, const Slices& slices) const {
     const GridPosition p(u, v, columns_, rows_);
     double low = 0, high = 0, before = 0;          // along the row at v

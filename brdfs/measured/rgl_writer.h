@@ -10,8 +10,8 @@
 
 namespace hshfit::brdfs {
 
-/// The resolution of an RGL file. The defaults are those below, or those of the source if that
-/// is an RGL file and only wavelengths are chosen.
+/// The resolution of an RGL file. These are the defaults, unless the source is an RGL file and only
+/// wavelengths are chosen: then the source's resolution is the default.
 struct RglResolution {
     std::size_t theta = 32;     ///< incident elevations
     std::size_t phi = 9;        ///< incident azimuths of a quarter circle; isotropic: 1

@@ -10,7 +10,7 @@
 namespace hshfit::brdfs {
 
 /// Reads a text file of numbers line by line, in place. Lines end in LF, CR LF or CR.
-/// Numbers are those of std::from_chars (independent of the locale), with an optional "+", and
+/// Numbers are read as by std::from_chars (independent of the locale), with an optional "+", and
 /// "nan" and "inf" in any case. A number that overflows a double is read as infinite, one that
 /// underflows as 0.
 class TextReader {

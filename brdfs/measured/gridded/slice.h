@@ -17,7 +17,7 @@ namespace hshfit::brdfs {
 struct SliceLayout {
     std::size_t halfCount = 0, differenceCount = 0;
     bool rootHalf = false;
-    double shift = 0.5;       ///< 0: a value is that of the start of its bin
+    double shift = 0.5;       ///< 0: a value holds at the start of its bin
     std::vector<double> phi;  ///< phi_d in degrees, ascending, from 0 to below `period`
     double period = 180;      ///< 180, or 360 without reciprocity
 
