@@ -58,8 +58,8 @@ std::string withNumbers(std::string_view text, const Write& write) {
     return result;
 }
 
-/// The command and its options, and the extension and the size of a file or a model with its
-/// parameters, numbers as `write` has them.
+/// The command and its options, and as input the extension and the size of a file, or a model with
+/// its parameters. `write` makes the text of a number.
 template <class Write>
 std::string textOf(const BatchItem& item, const BatchProgram& program, const Write& write) {
     constexpr std::size_t digits = 12;

@@ -30,10 +30,11 @@ private:
     std::map<std::string, std::pair<double, std::size_t>, std::less<>> classes_;  ///< sum, count
 };
 
-/// Items of one class take similar times: the command, its options, and the model with the powers
-/// of two of its parameters or the extension of a file with that of its size.
+/// The class of an item; items of one class take similar times. It is a text of the command, its
+/// options and its input: a model with the binary exponents of its parameters, or the extension of
+/// a file with the binary exponent of its size.
 std::string classOf(const BatchItem& item, const BatchProgram& program);
-/// The same without the powers of two.
+/// The same without the exponents.
 std::string widerClassOf(const BatchItem& item, const BatchProgram& program);
 /// A text, different for each item, by whose order items that take similar times are neighbours:
 /// the class, then the values of parameters.

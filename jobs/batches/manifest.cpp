@@ -119,8 +119,8 @@ void requireName(const std::string& name, const std::string& where) {
                         where, name, longestName));
 }
 
-/// The options of the defaults, if they are of this command, with those of the line over them;
-/// null takes one away.
+/// The default options, if they are for this command, overridden by the options of the line; null
+/// takes an option away.
 json mergedOptions(const Reading& reading, const json& line, std::string_view command,
                    const std::string& where) {
     const json& defaults = reading.defaults;
