@@ -35,11 +35,11 @@ struct ExportOptions {
     /// Specifications of lights (light/catalog.h) that the viewer offers as its environment, each
     /// on its own; empty: studio.
     std::vector<std::string> lights = {};
-    /// The place of three.js for the page of the target three, a path or an address; empty: that of
-    /// gpu::ThreeOptions.
+    /// The place of three.js for the page of the target three, a path or an address; empty: the
+    /// default of gpu::ThreeOptions.
     std::string library = {};
-    /// Number type of the texels; none: that of `pack`, and for a form exported as it is, that of
-    /// least bytes which holds the file.
+    /// Number type of the texels; none: `pack.number`, and for a form exported as it is, the type
+    /// of the fewest bytes that holds the file.
     std::optional<gpu::Number> number = {};
     gpu::Storage storage = gpu::Storage::automatic;  ///< of such a form in shaders
     /// Accept an export that is more than twice as far from its source as its file.
@@ -53,7 +53,7 @@ struct ExportOptions {
     bool zstd = false;   ///< compress KTX2
     bool force = false;  ///< replace existing files
 };
-/// With those that exports of materials, maps and lighting share, as `inputs` of the rows say.
+/// Also has the options that exports of materials, maps and lighting share (`inputs` of the rows).
 OptionRows<ExportOptions> exportOptions();
 
 /// The kinds of exports that an option is for (OptionRow::inputs).

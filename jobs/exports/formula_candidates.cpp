@@ -37,7 +37,7 @@ constexpr LobeModel lobeModels[] = {
     {"Lambert + 2 GGX", "lambert+ggx+ggx", 2},
 };
 
-/// A row of standard materials; `kind` is that of the candidates.
+/// A row of standard materials; `kind` is the kind of the candidates that it gives.
 struct StandardMaterial {
     const char *kind, *name, *target;
     double seconds;  ///< Candidate::seconds, of tables

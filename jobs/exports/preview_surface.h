@@ -10,10 +10,10 @@
 namespace hshfit::jobs {
 
 /// UsdPreviewSurface as gltf-pbr with some of its parameters: with metallicFactor = 0 both have the
-/// same Lambert term and lobe. Of a metal the specification gives no brighter edge (F90 is the
-/// albedo), gltf-pbr, three.js and others Schlick's. Between 0 and 1 the specification leaves open
-/// what is interpolated, so that metallicFactor is 0 or 1. The coat has the index of the base, that
-/// of gltf-pbr is 1.5.
+/// same Lambert term and lobe. The specification gives metals no brighter edge (F90 is the albedo);
+/// gltf-pbr, three.js and others give them Schlick's. metallicFactor has to be 0 or 1, because the
+/// specification leaves open what is interpolated between. The coat has the index of the base,
+/// gltf-pbr's coat the index 1.5.
 
 /// The parameters of a gltf-pbr for which UsdPreviewSurface has no input, or that it holds with
 /// other values only.

@@ -54,7 +54,7 @@ struct Sampled {
     std::vector<DrawnDirection> drawn;
     SampleRow here;               ///< the report at `outgoing`
     std::vector<SampleRow> rows;  ///< by elevation, at the azimuth of `outgoing`
-    bool stored = false;          ///< the proposal is that of the export, not fitted again
+    bool stored = false;          ///< the proposal comes from the export, not from a fit
     double buildSeconds = 0, nanosecondsPerSample = 0;
 };
 
