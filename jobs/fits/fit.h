@@ -38,7 +38,7 @@ struct FitOptions {
     std::string dispersion = {};   ///< laws over the wavelength (brdfs::parseDispersion)
     int starts = 16;               ///< local searches
     int iterations = 200;          ///< at most, in the last search
-    /// Of searches, which end then where they are, not converged; none: as long as they take.
+    /// The time after which searches end where they are, not converged; none: no limit.
     std::optional<double> seconds = {};
     std::uint64_t seed = 1;  ///< of starts and drawn samples
     double grazingCut = brdfs::SampleOptions{}.grazingCut;
@@ -99,8 +99,8 @@ bool isPresetPath(const std::string& output);
 Fitted fit(const std::string& data, const std::string& output, const FitOptions& options,
            const Listener& listener = {});
 
-/// The same of a BRDF that is open, called `name` in messages and in the preset; no file but those
-/// of residuals, bands and figures.
+/// The same for a BRDF that is open, called `name` in messages and in the preset. Writes no files
+/// but residuals, bands and figures.
 Fitted fitBrdf(const Brdf& data, const std::string& name, const FitOptions& options,
                const Listener& listener = {});
 
