@@ -36,7 +36,7 @@ namespace {
 namespace ml = material_library;
 using Json = nlohmann::ordered_json;
 
-/// Materials whose values are among the tests, and those of which pictures are drawn.
+/// The most materials whose values are among the tests, and the most of which pictures are drawn.
 constexpr std::size_t testedMaterials = 8, drawnMaterials = 64;
 
 gpu::SharedSums sumsOf(const ml::Library& library, ExportedLibrary& exported) {

@@ -48,8 +48,8 @@ struct ExportedTable {
 nlohmann::ordered_json tableJson(const ExportedTable& table);
 
 /// The proposals of materials, and how far samples by them are from f: the variance of f cos / pdf
-/// over the square of its mean, by 4096 samples, and that of samples by the cosine. Medians over at
-/// most 64 materials.
+/// relative to the square of its mean, by 4096 samples, and the same for samples by the cosine.
+/// Medians over at most 64 materials.
 struct ExportedSampling {
     struct Row {
         double theta = 0;  ///< of wo, degrees

@@ -32,8 +32,8 @@ std::string colourText(const LinearRgb& rgb) {
     return fmt::format("#{:02x}{:02x}{:02x}", encoded(rgb[0]), encoded(rgb[1]), encoded(rgb[2]));
 }
 
-/// The rows that the page draws: those of the answer with a picture and a colour, and without the
-/// table of all distances.
+/// The data that the page draws: the answer with a picture and a colour for each row, and without
+/// the table of all distances.
 Json pageData(const LibraryMap& map) {
     Json document = libraryMapJson(map);
     document.erase("distances");

@@ -33,9 +33,9 @@ struct LibraryOptions {
     std::string components = "auto";  ///< or a number; componentCount reads it
     std::size_t count = 10;           ///< of materials, or of the next pairs
     LearnLibraryOptions learn = {};
-    EncodeOptions encode = {};  ///< its limits are those of learn, too
+    EncodeOptions encode = {};  ///< its limits hold for learn, too
     ReconstructOptions reconstruct = {};
-    NextPairsOptions next = {};  ///< its library, sigma and count are those above
+    NextPairsOptions next = {};  ///< but for library, sigma and count, which are above
     LibraryExportOptions exporting = {};
     LibraryMapOptions map = {};
 

@@ -38,7 +38,7 @@ LearnedLibrary learnLibrary(const std::vector<std::string>& specs, const std::st
                             const LearnLibraryOptions& options, const Listener& listener = {});
 
 struct MergeLibraryOptions {
-    /// None: those of the libraries, which then have to be equal.
+    /// None: the options of the libraries, which then have to be equal.
     std::optional<material_library::LearnOptions> learn = {};
     bool final = false;
 };

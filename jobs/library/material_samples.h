@@ -42,7 +42,7 @@ struct NextPairsOptions {
     std::string instrument = "free";  ///< or "in-plane", a goniometer in the plane of incidence
 };
 
-/// The pairs to measure next, after those of `samples` if there are any, as a CSV with the columns
+/// The pairs to measure next, after the pairs in `samples` if any, as a CSV with the columns
 /// theta_i, phi_i, theta_o, phi_o (degrees) and expected_error; `output` may be empty.
 std::vector<material_library::NextPair> nextPairs(const std::string& samples,
                                                   const std::string& output,
