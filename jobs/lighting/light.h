@@ -31,8 +31,8 @@ struct SplitLight {
     std::string rest;           ///< path of the picture without the sun
     std::string sun;            ///< specification
     std::string specification;  ///< of the sum, which is the light
-    /// The coefficients of the sum less those of the picture, relative: root of the sum of squares,
-    /// of all bands and of band 0 alone.
+    /// The relative difference of the coefficients of the sum from the coefficients of the picture,
+    /// root of the sum of squares: of all bands, and of band 0 alone.
     double error = 0, meanError = 0;
 };
 

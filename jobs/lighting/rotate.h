@@ -43,9 +43,9 @@ struct Rotated {
 /// rotates in the frame in which wo is at azimuth 0 and stays isotropic; other sets do not, none
 /// stays reciprocal, and bilateral only those that turn about y.
 /// Light: on the whole sphere every direction moves; on a hemisphere it is rotated about the axes
-/// of that hemisphere's frame, whose normal stays. The energy that the file states becomes that of
-/// the part that stays. Throws UsageError for a way that the basis does not have, InputError and
-/// OutputError.
+/// of that hemisphere's frame, whose normal stays. The energy that the file states becomes the
+/// energy of the part that stays. Throws UsageError for a way that the basis does not have,
+/// InputError and OutputError.
 Rotated rotate(const std::string& input, const std::string& output, const RotateOptions& options);
 
 /// The same of coefficients at hand, in place; `name` is the light in messages.
