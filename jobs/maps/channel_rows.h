@@ -11,8 +11,8 @@ namespace hshfit::jobs {
 /// Some channels of a picture, row by row, with the rows that were read last.
 class ChannelRows {
 public:
-    /// `channels` by name; without any, those of `otherwise` where the picture has the first of
-    /// them, else its first. Throws InputError for a channel that there is not.
+    /// `channels` by name. Without any, takes `otherwise` if the picture has the first of these,
+    /// else the picture's first channel. Throws InputError for a channel that the picture lacks.
     ChannelRows(const std::string& path, const std::vector<std::string>& channels,
                 const std::vector<std::string>& otherwise);
 

@@ -9,7 +9,7 @@
 
 namespace hshfit::jobs {
 
-/// The values of a parameter from texel to texel: those of a picture.
+/// The values of a parameter from texel to texel, taken from a picture.
 struct MapReference {
     std::string path;
     /// One, or three for a colour; empty: R, G, B of a colour, else the first.

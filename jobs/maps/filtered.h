@@ -12,7 +12,7 @@
 
 namespace hshfit::jobs {
 
-/// Forms of textures of materials; the last three are those of filtered lobes.
+/// Forms of textures of materials; the last three have filtered lobes.
 inline constexpr std::string_view mapForms[] = {"outgoing", "low-rank", "clusters",  "halfway",
                                                 "library",  "ellipse",  "harmonics", "filtered"};
 /// Whether a form is one of `filteredMap`, and not of `svbrdf`.

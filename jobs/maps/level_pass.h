@@ -15,12 +15,12 @@
 
 namespace hshfit::jobs {
 
-/// Receives the rows of all levels: each of them in one process, those of the last levels in the
-/// first.
+/// Receives the rows of all levels: each row in one process, the rows of the last levels in the
+/// first process.
 struct LevelSinks {
     std::function<void(std::size_t y, std::span<const SurfaceTexel> row)> base = {};
     std::function<void(const MipRow& row)> level = {};  ///< none: level 0 alone
-    /// The numbers that the first process needs of a part, and its use of them.
+    /// The numbers of a part that the first process needs; `put` receives them there.
     std::function<std::vector<double>(const MipPart& part)> taken = {};
     std::function<void(const MipPart& part, std::span<const double> numbers)> put = {};
 };

@@ -29,9 +29,9 @@ std::string specificationOf(const ParameterMaps& maps, const std::vector<float>&
 /// The BRDF of a texel: specifications with their shares, which add up to 1.
 using SpecShares = std::map<std::string, double>;
 
-/// The BRDFs that texels stand for: of level 0 that of the parameters which the maps have there, of
-/// other levels the mean over the texels of level 0 below, of more than `most` as many on an even
-/// grid. Rows are read in their order. Throws InputError.
+/// The BRDFs that texels stand for. In level 0 it is the BRDF of the parameters that the maps have
+/// there. In other levels it is the mean over the texels of level 0 below, or over `most` of them
+/// at most, on an even grid. Rows are read in their order. Throws InputError.
 std::vector<SpecShares> brdfsOfTexels(ParameterMaps& maps, const std::vector<LevelSize>& levels,
                                       const std::vector<TexelPlace>& places, std::size_t most);
 

@@ -15,8 +15,8 @@
 
 namespace hshfit::jobs {
 
-/// The frame of a texel in that of the surface: its normal of length 1, and the azimuth of the
-/// direction that its model calls x, radians.
+/// The frame of a texel relative to the frame of the surface: its normal of length 1, and the
+/// azimuth of the direction that its model calls x, radians.
 struct TexelTurn {
     Direction normal = {0, 0, 1};
     double azimuth = 0;
