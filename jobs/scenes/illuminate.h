@@ -28,8 +28,8 @@ struct IlluminateOptions {
     std::string camera = {};  ///< the one to take; empty: all of the scene
     /// Paths, or lines of sight, through each pixel; none: 64, and 16 by a radiance cache.
     std::optional<std::size_t> samples = {};
-    PathOptions path = {};  ///< its `samples` are those above, and `progress` is not called
-    /// Of a radiance cache, whose bounces and seed are those of `path`.
+    PathOptions path = {};  ///< but for `samples`, which is above; `progress` is not called
+    /// For a radiance cache, which takes bounces and seed from `path`.
     CacheOptions cache = {};
     RecordsBy chooseBy = RecordsBy::cost;
     std::vector<std::string> without = {};  ///< terms of the cache that are left out, by name

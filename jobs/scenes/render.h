@@ -56,7 +56,7 @@ struct RenderedPicture {
     std::string brdf;
     std::string basis;  ///< of coefficients and differences
     int order = 0;
-    double exposure = 0;               ///< stops beside those of the sheet
+    double exposure = 0;               ///< stops on top of the sheet's
     std::size_t row = 0, column = 0;   ///< of its first pixel
     double error = 0;                  ///< LitPicture::error
     LitPicture::Largest largest = {};  ///< of integration

@@ -36,7 +36,7 @@ void requireMemory(std::size_t needed, const TransferOptions& options, std::size
         Setting{"GatheringOptions::rays"}, Setting{"TransferOptions::order"}));
 }
 
-/// Numbers of passes and of clusters in a checkpoint, beyond those of vertices.
+/// The first numbers of passes and of clusters in a checkpoint, beyond the numbers of vertices.
 constexpr std::uint64_t firstPass = std::uint64_t{1} << 40, firstClusters = firstPass << 1;
 
 /// Options that parts depend on.

@@ -8,8 +8,8 @@
 
 namespace hshfit::jobs {
 
-/// Tries every number of clusters that the options name, and returns the chosen form; its errors,
-/// those of the others and the verdict go to `done`. Finished numbers are kept and found again.
+/// Tries every number of clusters that the options name, and returns the chosen form. The errors of
+/// all forms and the verdict go to `done`. Forms that are finished are kept and found again.
 MatrixClusters compressed(const TransferView& view, const KeptParts& kept, const Listener& listener,
                           Transferred& done);
 

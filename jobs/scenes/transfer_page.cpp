@@ -29,8 +29,8 @@ PageLight pageLight(const NamedLight& light, int order) {
 }
 
 /// Sun and clear sky of a place at midsummer, every hour that the sun is up. In thousands of lux
-/// and of cd / m^2: the sun's illuminance is 127.5 exp(-0.21 / sin(elevation)), that of the
-/// Illuminating Engineering Society's clear sky.
+/// and of cd / m^2: the sun's illuminance is 127.5 exp(-0.21 / sin(elevation)), as the Illuminating
+/// Engineering Society gives it for a clear sky.
 PageLight dayLight(int order) {
     PageLight day{.name = "a day: 21 June at 50 degrees north"};
     for (int hour = 0; hour < 24; ++hour) {

@@ -20,8 +20,8 @@ struct NamedLight {
     std::vector<Light> lights;
 };
 
-/// The scene's own lights as "scene", if it has any, then those of the specifications. Throws as
-/// parseLights does.
+/// The scene's own lights as "scene", if it has any, then the lights of the specifications. Throws
+/// as parseLights does.
 std::vector<NamedLight> namedLights(const scene::Scene& read,
                                     const std::vector<std::string>& specifications);
 
