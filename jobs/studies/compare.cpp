@@ -117,8 +117,8 @@ std::string messageName(const std::string& spec, const Brdf& brdf) {
                : spec + " (coefficients of f cos(theta_i), divided by the cosine)";
 }
 
-/// The metrics that are asked for; of a transmission, whose directions are not exchanged, without
-/// that of reciprocity.
+/// The metrics that are asked for; without "reciprocity" for a transmission, whose directions
+/// cannot be exchanged.
 std::vector<const Metric*> metricsFor(const Brdf& a, const CompareOptions& options) {
     auto metrics = selectMetrics(options.metrics);
     if (!transmits(a)) return metrics;

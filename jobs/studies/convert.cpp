@@ -190,7 +190,7 @@ std::vector<std::string> requireEqual(std::vector<std::string>& inputs,
         } catch (const OutputError&) {
             throw;
         } catch (const Error&) {
-            // Its failure is reported with those of the others.
+            // The failure is met again, and reported, when the input is converted with the others.
         }
         (isKept ? kept : leftOutputs).push_back(outputs[i]);
         if (!isKept) leftInputs.push_back(inputs[i]);

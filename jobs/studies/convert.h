@@ -59,9 +59,9 @@ Converted convert(const std::string& input, const std::string& output,
                   const ConvertOptions& options, const Listener& listener = {});
 
 /// The same of many inputs, each to FOLDER/NAME with the extension of the format, which has to be
-/// given. Folders stand for their measured files. Files that stand are refused before any is
-/// written, unless `force` or, under a rule of the process, their bytes are those of the result;
-/// each new one appears when it is complete.
+/// given. Folders stand for their measured files. Files that exist are refused before any is
+/// written, unless `force` is set or, under a rule of the process (hshfit/files/output_rule.h),
+/// they have the bytes of the result. Each new file appears when it is complete.
 Many<Converted> convertMany(const std::vector<std::string>& specs, const std::string& folder,
                             const ConvertOptions& options, const Listener& listener = {});
 

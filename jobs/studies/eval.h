@@ -37,7 +37,7 @@ struct Evaluated {
 Evaluated evaluatePair(const std::string& source, const EvalOptions& options,
                        const Listener& listener = {});
 
-/// Values at the pairs of a file; `facts.values` are those of all pairs, pair by pair.
+/// Values at the pairs of a file; `facts.values` has the values of all pairs, pair by pair.
 struct EvaluatedPairs {
     Evaluated facts;
     std::size_t count = 0;

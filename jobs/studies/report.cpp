@@ -53,7 +53,7 @@ std::vector<Projection> withoutNumbers(const Brdf& brdf, std::span<const Basis* 
     return projections;
 }
 
-/// Adds the curve of spherical wavelets, whose energy is that of the projections.
+/// Adds the curve of spherical wavelets, relative to the same energy as the projections' curves.
 void addWavelets(ReportEntry& entry, const Brdf& brdf, int maxOrder) {
     std::optional<wavelets::SliceCurve> slices;
     if (entry.energy.finite) {

@@ -31,7 +31,7 @@ struct Reported {
 };
 
 /// Captured energy by order of every basis, for each BRDF. A BRDF without finite energy has an
-/// entry with the reason. The error of a single SPEC is thrown; those of several are in
+/// entry with the reason. The error of a single SPEC is thrown; with several, errors are in
 /// `failures`.
 Reported report(const std::vector<std::string>& specs, const ReportOptions& options,
                 const Listener& listener = {});
