@@ -198,7 +198,7 @@ void MpiProcesses::gather(std::size_t items, std::size_t itemBytes, void* all) {
         counts.push_back(static_cast<int>(last - first));
         firsts.push_back(static_cast<int>(first));
     }
-    // Counts of MPI are 32 bits wide, those of bytes are not.
+    // MPI takes counts of 32 bits, which are too few for counts of bytes.
     MPI_Datatype item = MPI_DATATYPE_NULL;
     MPI_Type_contiguous(static_cast<int>(itemBytes), MPI_BYTE, &item);
     MPI_Type_commit(&item);

@@ -49,8 +49,8 @@ public:
     /// D at the nodes, for shaders.
     std::vector<StoredLobe> stored(const LobeTable& table) const;
 
-    /// f and its parts for texels whose weights are those of `terms` (FilteredSidecar). The result
-    /// keeps a reference to this object.
+    /// f and its parts for texels with the weights in `terms` (FilteredSidecar). The result keeps a
+    /// reference to this object.
     FilteredSurface surface(const std::vector<std::vector<LobeWeight>>& terms, std::size_t channels,
                             int albedos) const;
 

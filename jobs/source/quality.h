@@ -28,11 +28,12 @@ struct Poor {
 /// {"reason": …, "better": …}
 nlohmann::ordered_json poorJson(const Poor& poor);
 
-/// The share of its source's energy that a result captures. Plain coefficients and orthonormal ones
-/// have it from their squares; other bases, forms in which both directions are expanded and those
-/// of an energy that does not exist, from f cos(theta_i) at their few outgoing directions or else
-/// from f cos(theta_i) cos(theta_o) over `pairs`, which are measured if none are given. None where
-/// the source is 0 or not finite, and for least squares, which have a residual instead.
+/// The share of its source's energy that a result captures. For plain coefficients and orthonormal
+/// bases it follows from the squares of the coefficients. For other bases, for forms in which both
+/// directions are expanded, and where the energy does not exist, it is measured: by f cos(theta_i)
+/// if the result has few outgoing directions, else by f cos(theta_i) cos(theta_o) over `pairs`,
+/// which are computed if none are given. None where the source is 0 or not finite, and for least
+/// squares, which have a residual instead.
 std::optional<double> capturedShare(const Projection& projection, const Brdf& source);
 std::optional<double> capturedShare(const Representation& kept, const Brdf& source,
                                     const std::optional<PairSummary>& pairs = {});
@@ -64,7 +65,7 @@ std::optional<Poor> judge(const gpu::ErrorSplit& split, const std::optional<Pict
 /// A fit that was made in a trial.
 struct TriedFit {
     std::string model;
-    std::string loss = {};              ///< another than that of the poor fit; empty: the same
+    std::string loss = {};              ///< if not the loss of the poor fit; empty: the same
     double explained = 0;               ///< share of the data, in units of its loss
     std::optional<double> flip = {};    ///< mean FLIP, where pictures can be drawn
     std::optional<double> factor = {};  ///< the median of brdfs::SampleFactors, of measured samples
