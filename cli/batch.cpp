@@ -28,8 +28,8 @@ struct BatchArguments {
     jobs::BatchRequest options;
 };
 
-/// Paths of a manifest are relative to its folder, which becomes the current one; those of the
-/// command line become absolute before.
+/// Makes the folder of the manifest the current one, to which paths in the manifest are relative.
+/// Paths of the command line become absolute before.
 void enterFolderOf(BatchArguments& arguments) {
     for (std::string* path :
          {&arguments.folder, &arguments.options.run.costs, &arguments.options.progress})

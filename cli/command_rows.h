@@ -15,8 +15,8 @@ using jobs::Values;
 using jobs::Word;
 using jobs::options::at;
 
-/// An argument by its place, "SPEC", or an option that the command has beside those of its job, its
-/// output above all. A name in capitals is an argument by its place.
+/// An argument by its place, "SPEC", or an option that the command has beside the options of its
+/// job, above all the output. A name in capitals is an argument by its place.
 struct ArgumentRow {
     jobs::OptionRow row;
     bool required = false;

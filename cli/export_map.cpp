@@ -59,7 +59,7 @@ std::string mapDocumentText(const Json& document) {
     const auto words = [&](const char* key) { return document[key].get<std::string>(); };
     const std::string order =
         document.contains("order") ? fmt::format(" order {}", document["order"].get<int>()) : "";
-    // The order is that of the basis, or of the harmonics that the form is named after.
+    // The order of the basis, or of the harmonics that the form is named after.
     const std::string form = document.contains("basis")
                                  ? fmt::format("{}, {}{}", words("form"), words("basis"), order)
                                  : fmt::format("{}{}", words("form"), order);

@@ -126,7 +126,7 @@ struct InfoArguments {
     jobs::InfoOptions options;
 };
 
-/// The answer, and whether it is that of a light.
+/// The answer, and whether it is about a light.
 struct Described {
     Json document;
     bool light = false;

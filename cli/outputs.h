@@ -13,9 +13,9 @@ void addForce(CLI::App& command, Globals& globals);
 
 /// States the rule of the process for the files that the parsed command writes
 /// (hshfit/files/output_rule.h, jobs/kept_outputs.h). If all of them exist and are valid, it prints
-/// that and returns true: nothing is left to do,
-/// and the exit code is that of the run that made them. Throws OutputError for files that are
-/// refused, and UsageError where two options write one file.
+/// that and returns true: nothing is left to do, and the process ends with the exit code of the run
+/// that made them. Throws OutputError for files that are refused, and UsageError where two options
+/// write one file.
 bool areOutputsKept(const CLI::App& command, Globals& globals);
 
 /// Says which files stood with the bytes that the command would have written.

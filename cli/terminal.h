@@ -5,8 +5,9 @@
 
 namespace hshfit::cli {
 
-/// Columns that help takes: those that COLUMNS states, else those of the terminal that is standard
-/// output, else 80; at least 40 and at most 100, beyond which lines are hard to read.
+/// The width of help in columns: the number that COLUMNS states, else the width of the terminal
+/// that is standard output, else 80; at least 40 and at most 100, beyond which lines are hard to
+/// read.
 std::size_t columns();
 
 /// The same for tables, none where lines are to stay whole: standard output is no terminal and

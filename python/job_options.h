@@ -18,7 +18,7 @@ using Options = std::vector<jobs::BoundOption>;
 
 /// Options of several structs.
 Options joined(std::initializer_list<Options> parts);
-/// Without those of the names given, or with those alone.
+/// The options without the given names, or with these names alone.
 Options without(Options options, std::initializer_list<std::string_view> names);
 Options only(Options options, std::initializer_list<std::string_view> names);
 
