@@ -23,9 +23,10 @@ double grey(const std::vector<float>& values, std::size_t pixel) {
            3;
 }
 
-/// The largest distance of a pixel from the paths, over their mean in the 5 x 5 pixels about it or
-/// a hundredth of that of the picture, which is more where a horizon is all but black, and what is
-/// left of such distances beyond three standard errors of both pictures.
+/// `distance` is the largest difference of a pixel from the picture by paths, relative to the mean
+/// of that picture in the 5 x 5 pixels about it, or to a hundredth of the mean of the whole picture
+/// if that is more, as where a horizon is all but black. `beyond` is the most by which a difference
+/// exceeds three standard errors of both pictures.
 struct Largest {
     double distance = 0, beyond = 0;
     int column = 0, row = 0;

@@ -122,7 +122,7 @@ RgbPicture shown(const SpherePicture& sphere, double stops) {
 }
 
 /// f with lobes that are stated no narrower than pictures of some tens of pixels show. Tables state
-/// those of their finest cells, for which a panel light would get 10^5 nodes at every pixel.
+/// lobes as narrow as their finest cells, and a panel light would get 10^5 nodes at every pixel.
 class SeenInPixels final : public Brdf {
 public:
     explicit SeenInPixels(const Brdf& brdf) : brdf_(brdf) {}
@@ -225,7 +225,8 @@ SpherePicture exposed(SpherePicture sphere, double stops) {
     return sphere;
 }
 
-/// `pictures` has, for each of DATA, those of the source, of the former fit, and of each loss.
+/// `pictures` has, for each of DATA, pictures of the source, of the former fit, and of the fit by
+/// each loss.
 void writeCompared(const std::vector<std::vector<SpherePicture>>& pictures, std::size_t data,
                    const std::string& path) {
     const std::size_t each = pictures.size() / data;

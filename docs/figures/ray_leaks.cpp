@@ -148,7 +148,7 @@ void printPaths(const Closed& closed, std::size_t count) {
                 hit = scene.firstHit(closed.middle, even(random));
                 continue;
             }
-            // The density is that of the cosine about the triangle's own normal.
+            // The density is in proportion to the cosine about the triangle's own normal.
             const Direction unit = even(random);
             const Direction along =
                 normalised({hit->flat.x + unit.x, hit->flat.y + unit.y, hit->flat.z + unit.z});
