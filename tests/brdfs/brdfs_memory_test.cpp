@@ -1,6 +1,6 @@
 // Vector code of models, tables and fits on every instruction set, with directions and results that
-// end where memory does. Values are those of the same pairs alone, which other tests hold against
-// scalar code.
+// end where memory does. Values equal the values of the same pairs evaluated alone, which other
+// tests compare to scalar code.
 
 #include <brdfs/catalog.h>
 #include <brdfs/fit/column_products.h>

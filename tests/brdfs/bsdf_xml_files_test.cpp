@@ -194,7 +194,7 @@ TEST(BsdfXmlFiles, SlatsAlongX) {
         const double y = valueOf(*brdf, {a.x, -a.y, a.z}, {b.x, -b.y, b.z});
         alongX.push_back(std::abs(f - x) / (f + x));
         alongY.push_back(std::abs(f - y) / (f + y));
-        // Were incident azimuths those of wi, reciprocity would be lost.
+        // If azimuths of incidence were taken from wi, reciprocity would be lost.
         const double ab = valueOf(*brdf, mirrored(a), b), ba = valueOf(*brdf, mirrored(b), a);
         unturned.push_back(std::abs(ab - ba) / (ab + ba));
     }

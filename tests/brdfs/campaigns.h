@@ -23,7 +23,7 @@ namespace hshfit::test {
 
 inline const std::string campaignTruth = "lambert:kd=.3 + ggx:ks=.25,F0=.9,alpha=.15";
 
-/// Values of the truth by the names of parameters; 0 for those of the instrument.
+/// Values of the truth by the names of parameters; 0 for parameters of the instrument.
 inline double truthOf(const std::string& parameter) {
     if (parameter == "ggx.alpha") return 0.15;
     if (parameter == "lambert.kd") return 0.3;

@@ -48,7 +48,7 @@ TEST_P(FacetNormalsOf, TermsAddUpToTheModel) {
     }
 }
 
-/// Projected areas of facets add up to that of the surface: the integral of D cos is 1. The slope
+/// Projected areas of facets add up to the surface's: the integral of D cos is 1. The slope
 /// t = tan(theta) = scale s / (1 - s) covers the tail.
 TEST_P(FacetNormalsOf, DistributionsAreNormalised) {
     const auto brdf = brdfs::openModel(GetParam());

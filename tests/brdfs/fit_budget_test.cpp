@@ -138,7 +138,7 @@ TEST(Budget, OfALambertianSurfaceIsThatByHand) {
     EXPECT_NEAR(*result.parameters[0].standardError, std::sqrt(variance), 1e-10);
     EXPECT_NEAR(budget.degrees, variance * variance / fourths, 1e-5 * budget.degrees);
     EXPECT_NEAR(budget.expanded, budget.coverage * std::sqrt(variance), 1e-10);
-    // Everywhere the error of f is that of kd over pi.
+    // Everywhere the error of f is the error of kd over pi.
     const DirectionPair pairs[] = {{directionFromAngles(0.3, 0), directionFromAngles(0.6, 2)}};
     const Prediction prediction = predict(result, pairs);
     EXPECT_NEAR(prediction.errors[0], std::sqrt(variance) / pi, 1e-10);
@@ -275,7 +275,7 @@ TEST(CorrelatedErrors, OfALambertianSurfaceAreThoseByHand) {
     const double error = pi / static_cast<double>(samples.size()) * 0.002 * std::sqrt(sum);
     const double generalised = pi * 0.002 / std::sqrt(r.inverse().sum());
     EXPECT_LT(generalised, 0.999 * error);
-    // Along the scans errors are larger than those of independent readings by more than 1.9.
+    // Along the scans the error is more than 1.9 times as large as by independent readings.
     EXPECT_GT(sum, 3.61 * static_cast<double>(samples.size()));
     for (const bool laws : {false, true}) {
         options.dispersion = laws ? "kd=free" : "";

@@ -42,8 +42,9 @@ std::vector<Case> casesOf() {
         bool anisotropic = false;
         for (const Parameter& parameter : model.parameters)
             for (const FitRange& range : parameter.fit) {
-                // The default's own are those of the empty choice. A name alone is a part that is
-                // fitted once it is stated, a film of R, G and B: fit_film_test.
+                // A choice that is the default is the same as the empty one, and is taken out
+                // below. A name alone is a part that is fitted once it is stated, a film of R, G
+                // and B: fit_film_test.
                 if (range.choice.find('=') != range.choice.npos) choices.emplace(range.choice);
                 anisotropic = anisotropic || range.data == FitRange::Data::anisotropic ||
                               !range.follows.empty();
@@ -91,7 +92,7 @@ Truth draw(const Case& c, std::mt19937_64& random) {
 constexpr double most = 5;  // in standard errors
 
 /// Under a coat OpenPBR's base reflects by this index (openpbr.h), which two values of
-/// specular_ior share: one below that of the coat, one above.
+/// specular_ior share: one below the index of the coat, one above.
 double indexUnderCoat(double ior, double coatIor, double coatWeight) {
     const double ratio = ior / coatIor;
     return ior + coatWeight * (std::max(ratio, 1 / ratio) - ior);
@@ -125,7 +126,7 @@ double distance(const FreeParameter& parameter, double a, double b) {
 }
 
 /// `reported`: not converged, or parameters that the fit calls ambiguous, at a bound, or correlated
-/// by more than 0.95, with a loss that is as low as that of the truth.
+/// by more than 0.95, with a loss that is as low as the loss of the truth.
 enum class Outcome { recovered, reported, wrong };
 
 struct Judged {
@@ -264,12 +265,12 @@ double chiSquareOf(const Brdf& brdf, const FitSamples& samples) {
     return sum;
 }
 
-// With the noise stated, the chi-square of the truth exceeds that of the fit by a chi-square with
-// as many degrees of freedom as there are parameters (Wilks 1938, 10.1214/aoms/1177732360),
-// whatever the scale of the parameters and their correlation. Draws in which the data leave
-// something open, or in which a parameter ends at a bound, are not counted; they are the fits that
-// say so. Of models with more than eight parameters a few starts may miss the minimum, which is
-// counted.
+// With the noise stated, the chi-square of the truth exceeds the chi-square of the fit by a
+// chi-square variable with as many degrees of freedom as there are parameters (Wilks 1938,
+// 10.1214/aoms/1177732360), whatever the scale of the parameters and their correlation. Draws in
+// which the data leave something open, or in which a parameter ends at a bound, are not counted,
+// since their fits report it. For models with more than eight parameters a few starts may miss the
+// minimum; such misses are counted.
 TEST_P(CatalogRecovery, TheTruthIsAsFarFromTheFitAsTheNoiseImplies) {
     constexpr double noise = 0.05;
     std::mt19937_64 random(23);

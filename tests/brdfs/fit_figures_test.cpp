@@ -81,7 +81,7 @@ std::set<std::string> entries(const fs::path& folder) {
     return names;
 }
 
-/// Markers drawn in an SVG document, those of its legend included.
+/// Markers drawn in an SVG document, including its legend.
 int markersIn(const std::string& svg) {
     const std::string drawn = svg.substr(svg.find("</defs>"));
     const std::regex use("<use ");
@@ -296,7 +296,7 @@ std::vector<std::vector<std::string>> cellsOf(const std::string& tex) {
     return rows;
 }
 
-/// The tabulars of parameters, which stand before that of the correlations.
+/// The tabulars of parameters, which stand before the tabular of correlations.
 std::string parametersOf(const std::string& tex) {
     return tex.substr(0, tex.find("  correlation &"));
 }

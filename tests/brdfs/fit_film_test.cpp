@@ -46,7 +46,7 @@ std::vector<double> startOf(const ParametricSum& sum, std::size_t channels) {
 }
 
 // f of a fit is f of the specification that it writes, in every channel, and the gradient of a loss
-// is that of its differences.
+// agrees with differences of the loss.
 TEST(FilmFit, ValuesAndGradientsAreThoseOfTheCatalogModel) {
     for (const std::string model :
          {"gltf-pbr:iridescenceFactor=.8", "openpbr:thin_film_weight=.8"}) {
@@ -98,7 +98,7 @@ TEST(FilmFit, RecoversAFilm) {
     EXPECT_NE(openpbr.spec.find("thin_film_weight=1"), std::string::npos) << openpbr.spec;
 }
 
-// A prediction of a channel is f there, and its error that of the parameters.
+// A prediction of a channel is f there, and its error follows from the errors of the parameters.
 TEST(FilmFit, PredictionsAreThoseOfEachChannel) {
     const FitSamples samples = samplesOf(gltfFilm, 600, 0.01);
     const FitResult result =

@@ -1,4 +1,4 @@
-// The columns of fits are the catalog's values, and their derivatives are those of its differences.
+// The columns of fits are the catalog's values, and their derivatives agree with differences.
 #include <brdfs/catalog.h>
 #include <brdfs/fit/column_blocks.h>
 #include <brdfs/fit/normal_equations.h>
@@ -48,7 +48,7 @@ TEST_P(Formulas, DerivativesMatchFiniteDifferencesOfCatalogModels) {
         std::vector<double> a(fast.count() * samples.size()), b(a.size());
         fast.fill(0, samples.size(), a.data());
         reference.fill(0, samples.size(), b.data());
-        // Brdf::eval cuts f at 0, a fit does not: the columns are those of what is not cut.
+        // Brdf::eval cuts f at 0, a fit does not: its columns also have values below 0.
         std::vector<bool> cut(samples.size());
         for (std::size_t k = 0; k < samples.size(); ++k)
             for (std::size_t i = 0; i <= sum.linears().size(); ++i)

@@ -121,7 +121,8 @@ TEST(InstrumentErrors, OfLinearTermsAreThoseOfGsl) {
     }
 }
 
-// Three scans give the errors of stated uncertainties: those of f are g^T C g, g its two columns.
+// With three scans errors follow from the stated uncertainties: the variance of f is g^T C g, g its
+// two columns.
 TEST(InstrumentErrors, OfFAreThoseOfTheMaterialByGsl) {
     const FitSamples samples = pointScans(3, 3);
     FitOptions options{.model = "lambert + ggx:F0=.9,alpha=.1", .loss = Loss::Kind::l2};
@@ -333,8 +334,8 @@ TEST(InstrumentRanking, HeldOutScansArePredictedWithTheInstrument) {
     EXPECT_LT(with[0].heldOut, 0.7 * without[0].heldOut);
 }
 
-// Three scans of three parameters give no errors by scan: those of the stated uncertainties and of
-// the prior of scales are taken, which hold, and without either there are none.
+// Three scans are too few for errors of three parameters by scan. Errors follow from the stated
+// uncertainties and the prior of scales, and hold; without either, the fit is refused.
 TEST(InstrumentCoverage, OfThreeScansIsByStatedUncertainties) {
     constexpr std::size_t repeats = 600, scans = 3;
     const ScanTruth truth{.source = "", .detector = "", .dark = 0, .along = 0};

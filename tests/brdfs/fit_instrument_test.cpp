@@ -234,7 +234,7 @@ TEST(StrayLight, IsTheDirectionalAlbedoOverPi) {
     }
 }
 
-/// Readings of three wavelengths with every term, from a material that is not that of the test.
+/// Readings of three wavelengths with every term, from another material than the test's.
 FitSamples everything(std::mt19937_64& random, std::size_t scans) {
     std::vector<DirectionPair> pairs;
     for (std::size_t s = 0; s < scans; ++s)
@@ -328,7 +328,7 @@ TEST(InstrumentFit, OfAperturesAloneIsThatOfAveragedSamples) {
     // The preset is the material.
     const Direction wi = directionFromAngles(0.5, 0), wo = directionFromAngles(0.5, pi);
     EXPECT_NEAR(evaluate(*openFit(result), wi, wo).front(), evaluate(*truth, wi, wo).front(), 1e-3);
-    // Predictions are readings, at directions other than those of the fit, too.
+    // Predictions are readings.
     const std::vector<double> predicted = predictedValues(result, samples);
     for (std::size_t k = 0; k < samples.size(); ++k)
         EXPECT_NEAR(predicted[k], samples.values[k], 2e-4 * samples.values[k]);

@@ -135,8 +135,8 @@ private:
     Laws laws_;
 };
 
-/// Pixels of what claims to be isotropic take half of the directions, those of the same f without
-/// the claim all of them.
+/// Pixels of an f that claims to be isotropic take half of the directions. Without the claim,
+/// pixels of the same f take all of them.
 TEST(PictureSamples, OfIsotropicDataAreThoseOfAllDirections) {
     // Many nodes for the edges of the panel.
     const PictureSampleOptions options{
@@ -211,7 +211,7 @@ TEST(PictureLoss, SeesMirrorsThatTheDataDoNotHave) {
     EXPECT_GT(lossOfCoat(1e-4), lossOfCoat(1e-2));
 }
 
-/// Derivatives of sums over nodes are those of their terms.
+/// Derivatives of sums over nodes are sums of the derivatives of their terms.
 TEST(PictureLoss, DerivativesMatchFiniteDifferences) {
     const auto data = open("lambert:kd=.2+ggx:alpha=.15,F0=.2");
     const FitSamples samples = pictureSamples(*data, {.rings = 3, .around = 4, .points = 40});

@@ -85,7 +85,7 @@ TEST(ChooseParts, LeavesDefaultsThatTheDataDoNotContradict) {
     }
 }
 
-// Unknown values of a start are those of the searches.
+// Unknown values of a start are taken from the searches.
 TEST(GivenStart, MayBeOfSomeShapes) {
     const FitSamples samples =
         samplesOf("lambert:kd=.2+ggx:alpha=.1,ks=.4,F0=1+ggx:alpha=.5,ks=.5,F0=1", 0);

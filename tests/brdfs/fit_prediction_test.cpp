@@ -113,7 +113,7 @@ TEST(Prediction, ErrorsOfLinearFitsAreThoseOfLeaveOneOutFits) {
     }
 }
 
-// The parameters of both terms have no error, and f has that of one term alone.
+// The parameters of both terms have no error, and f has the same error as by one term alone.
 TEST(Prediction, HasAnErrorWhereTheDataDoNotTellParametersApart) {
     std::mt19937_64 random(5);
     FitSamples samples = samplesOf("lambert:kd=.5", 80, random);
@@ -259,8 +259,8 @@ Coverage coverageOf(std::size_t draws, std::size_t values, bool stated, std::siz
     return shares;
 }
 
-// Binomial errors of the shares are at most those of as many independent values as there are sets,
-// 0.010 and 0.005: those at the pairs of one set are correlated.
+// Binomial errors of the shares are at most the errors by as many independent values as there are
+// sets, 0.010 and 0.005: values at the pairs of one set are correlated.
 TEST(PredictionCoverage, BandsHoldTheTruthAtTheirStatedRates) {
     const Coverage shares = coverageOf(2000, 400, true);
     EXPECT_NEAR(shares.within68, 0.68, 0.02);

@@ -117,7 +117,7 @@ TEST_F(FitReports, PagesHaveTheFit) {
     for (std::sregex_iterator at(page.begin(), page.end(), id), end; at != end; ++at)
         EXPECT_TRUE(identifiers.insert((*at)[1]).second) << (*at)[1];
     EXPECT_GT(identifiers.size(), 5u);
-    // The drawn correlations are those of the answer.
+    // The drawn correlations are the correlations in the answer.
     std::istringstream csv(read(path("report/correlations.csv")));
     std::string line;
     std::getline(csv, line);
@@ -163,7 +163,7 @@ TEST_F(Certificates, HoldWhatWasStatedAndFound) {
     const Json answer = Json::parse(got.out);
     for (const Json& p : answer["fit"]["parameters"])
         EXPECT_TRUE(has(text, p["name"].get<std::string>()));
-    // The hashes are those of the files, by another program.
+    // Another program finds the same hashes of the files.
     for (const std::string& file : {goniometer("scans.csv"), goniometer("fields.json")}) {
         const std::string sum = said("sha256sum '" + file + "'").first.substr(0, 64);
         EXPECT_TRUE(has(text, sum)) << file << "\n" << text;

@@ -21,10 +21,10 @@ struct Rival {
     int starts = 16;
 };
 
-/// Ngan et al. 2005 and E1 of Löw et al. 2012 minimise squares of f cos(theta_i), E2 of the latter
-/// those of ln(1 + f cos(theta_i)). Bagher et al. 2012 are held to the former. There are no
-/// published parameters of GGX for these materials; those of Cook and Torrance's model replace
-/// them.
+/// Ngan et al. 2005 and E1 of Löw et al. 2012 minimise squares of errors of f cos(theta_i), E2 of
+/// Löw et al. squares of errors of ln(1 + f cos(theta_i)). Bagher et al. 2012 are held to the
+/// squares for f cos(theta_i). There are no published parameters of GGX for these materials; the
+/// fits of Cook and Torrance's model take their place.
 inline constexpr std::array rivals{
     Rival{"ngan-ward", "ward:variant=1992", Loss::Kind::cosine},
     Rival{"ngan-ward-duer", "ward:variant=duer", Loss::Kind::cosine},

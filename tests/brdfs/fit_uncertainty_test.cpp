@@ -31,7 +31,7 @@ constexpr std::size_t scanLength = 6;
 using test::directionBelow, test::normal, test::uniform;
 
 /// Scans of outgoing directions through the lobe, each at an incident direction of its own. Values
-/// are those of `spec`.
+/// are f of `spec`.
 FitSamples scansOf(const std::string& spec, std::size_t scans, std::mt19937_64& random) {
     FitSamples samples;
     samples.isotropic = true;

@@ -173,7 +173,7 @@ TEST(AltaStream, FilesWithoutMarksBeginAtTheFirstByteThatIsNoRemark) {
         const Samples samples = readAlta(text, "f");
         EXPECT_EQ(samples.values, (std::vector<double>{0.31, 0.52}));
     }
-    // The low byte of the first double may be any, also that of '#'.
+    // The low byte of the first double may be any byte, '#' too.
     std::string odd = bytesOf({0.0, 0.2, 0.1, 0.31, 0.1, 0.2, 3.1, 0.52});
     odd[0] = '#';
     EXPECT_EQ(readAlta(altaHeader + end + odd, "f").size(), 2u);

@@ -31,7 +31,7 @@ struct ScanTruth {
 constexpr std::size_t samplesOfAScan = 8;
 
 /// In the plane of incidence through the lobe, up to 80 degrees; exact readings but for the dark
-/// signal. Averages by quadratures far finer than those of a fit.
+/// signal. Averages are by quadratures far finer than a fit's.
 inline brdfs::FitSamples exactScans(const ScanTruth& truth, std::size_t scans, std::uint64_t seed) {
     constexpr double around[samplesOfAScan] = {-45, -20, -8, -3, 1, 5, 12, 30};
     std::mt19937_64 random(seed);

@@ -8,8 +8,8 @@
 
 namespace hshfit::brdfs {
 
-/// A pair of directions in the papers' angles: polar angles, azimuths, and those of the half
-/// vector.
+/// A pair of directions in the papers' angles: polar angles and azimuths of both directions and of
+/// the half vector.
 struct Angles {
     double thetaI, phiI, thetaO, phiO, thetaH, phiH;
     double cosHO;  ///< between half vector and wo

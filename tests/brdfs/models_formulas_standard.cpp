@@ -33,7 +33,7 @@ double mix(double a, double b, double t) {
     return a * (1 - t) + b * t;
 }
 
-/// D V of the listing in KHR_materials_anisotropy; at = ab is that of the viewers without it.
+/// D V of the listing in KHR_materials_anisotropy; with at = ab, D V of viewers without it.
 double anisotropicLobe(const Pair& p, double at, double ab, double rotation) {
     const Vector t{std::cos(rotation), std::sin(rotation), 0},
         b{-std::sin(rotation), std::cos(rotation), 0};
@@ -272,7 +272,7 @@ TEST(StandardMaterials, OpenpbrCoatAndFuzzLieAboveTheBase) {
 }
 
 /// `iridescent_fresnel` of KHR_materials_iridescence as printed, but for a base of F0 = 1, with a
-/// cut at 1. The phases of R, G and B are those of their own bases.
+/// cut at 1. R, G and B each have the phase of their own base.
 Vector iridescentFresnel(double outside, double ior, const Vector& baseF0, double thickness,
                          double cosine) {
     constexpr double toRgb[3][3] = {{3.2404542, -1.5371385, -0.4985314},

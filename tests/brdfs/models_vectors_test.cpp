@@ -104,7 +104,7 @@ TEST(ModelVectors, AgreeWithDoubleOverTheGrid) {
     });
 }
 
-/// A value of the parameter: within the ranges of fits, which are those of materials.
+/// A value of the parameter, within the ranges of fits, where materials lie.
 std::string randomValue(const Parameter& parameter, Directions& directions) {
     if (parameter.kind == Parameter::Kind::choice) {
         const double size = static_cast<double>(parameter.choices.size());

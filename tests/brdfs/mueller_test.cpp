@@ -174,9 +174,9 @@ Residuals residualsOf(const Brdf& element, const Brdf& reflectance, std::size_t 
             std::sqrt(sums.turned / count)};
 }
 
-/// The expansion was fitted to these rows, elements i <= j and, by reciprocity, those below: its
-/// formulas and signs are right where it leaves the noise of the instrument, which is that of the
-/// elements that are close to 0 (M03, M30).
+/// The expansion was fitted to these rows, to the elements i <= j and, by reciprocity, to the
+/// elements below: its formulas and signs are right if it leaves the noise of the instrument, which
+/// the elements close to 0 (M03, M30) show.
 TEST_F(Ptfe, TheExpansionLeavesTheNoiseOfEveryMeasuredElement) {
     SKIP_WITHOUT(file("PTFE.coeff.csv"));
     const auto rows = measuredRows(file("PTFE.data.csv"));

@@ -62,7 +62,7 @@ private:
     Laws laws_{.isotropic = true};
 };
 
-/// Root mean square error of f cos(theta_o) over that of f cos(theta_o), at random pairs.
+/// Root mean square error of f cos(theta_o) over its root mean square, at random pairs.
 double errorOf(const Brdf& brdf, const Brdf& file, int pairs = 4000) {
     std::mt19937 random(7);
     double error = 0, norm = 0;

@@ -1,5 +1,5 @@
 // The model of transmission through rough glass against Walter et al. 2007 in the paper's own
-// terms: its formula, its energy together with that of reflection, the smooth limit, and
+// terms: its formula, its energy together with the energy of reflection, the smooth limit, and
 // reciprocity.
 
 #include <brdfs/catalog.h>

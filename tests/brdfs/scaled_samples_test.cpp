@@ -1,5 +1,5 @@
-// A factor or a change of channels before a file of samples leaves samples: the values are those of
-// the file times the factor, and no interpolated ones take their place.
+// A factor or a change of channels before a file of samples leaves samples: the values in the file
+// times the factor, and no interpolated values in their place.
 
 #include <brdfs/catalog.h>
 #include <brdfs/fit/fit_samples.h>

@@ -202,7 +202,7 @@ TEST(SpeosSides, AnisotropicFilesHaveTheirTransmissionToo) {
     EXPECT_FALSE(through.isotropic);
     EXPECT_EQ(through.channels.wavelengths, (Values{400, 500}));
     ASSERT_EQ(through.size(), 6U);
-    // The scale is that of the first table, whose integral is 2 pi.
+    // The first table gives the scale. Its integral is 2 pi.
     EXPECT_NEAR(through.values[0], 0.3 / pi, 1e-12);
     EXPECT_NEAR(through.values[1], 0.4 / pi, 1e-12);
     EXPECT_NEAR(through.values[6], 0.6 / pi, 1e-12);
@@ -245,7 +245,7 @@ TEST(PabOpto, FilesBehindEachOtherAreOneScan) {
     expectDirection(samples.wi[2], atDegrees(30, 170));
     EXPECT_EQ(samples.values[2], 0.25);
     EXPECT_EQ(samples.facts[1], (Fact{"incidences", std::int64_t{2}}));
-    // A header that lacks its own format or incidence does not borrow those of the file before.
+    // A header that lacks its own format or incidence does not borrow from the file before.
     expectInputError([&] { readPabOpto(pabText + "#intheta 30\n10 0 0.25\n", "f"); },
                      {"line 9", "#format"});
     expectInputError([&] { readPabOpto(pabText + "#format: theta phi DSF\n10 0 0.25\n", "f"); },

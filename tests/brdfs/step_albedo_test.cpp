@@ -159,8 +159,8 @@ TEST(StepAlbedo, IntegralsOfAnIsotropicTree) {
     }
 }
 
-// f = a(wi) b(wo): the reflectance is a(wi) times the integral of b, the albedo b(wo) times that of
-// a. With a = 1 + z and b = z^2 / pi these are (1 + z) / 2 and 5/3 z^2.
+// f = a(wi) b(wo): the reflectance is a(wi) times the integral of b, the albedo b(wo) times the
+// integral of a. With a = 1 + z and b = z^2 / pi they are (1 + z) / 2 and 5/3 z^2.
 TEST(StepAlbedo, ReflectanceIsOverWoAndAlbedoOverWi) {
     const FormulaBrdf skew(
         [](const Direction& wi, const Direction& wo) { return (1 + wi.z) * wo.z * wo.z / pi; });

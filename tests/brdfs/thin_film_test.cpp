@@ -31,8 +31,8 @@ double f0Of(double index) {
     return square((index - 1) / (index + 1));
 }
 
-/// Of equal energy over the CIE curves, by steps of 0.5 nm: R, G and B of a spectrum, in units of
-/// Y of a perfect reflector.
+/// R, G and B of a reflectance spectrum under light of equal energy, by the CIE curves in steps of
+/// 0.5 nm, in units of Y of a perfect reflector.
 Rgb overCurves(const Spectrum& spectrum) {
     constexpr int parts = 10;
     double xyz[3] = {}, white = 0;
