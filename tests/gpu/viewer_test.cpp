@@ -165,8 +165,8 @@ Rgb fluxOf(const ViewerLight& light) {
 }
 
 TEST(ViewerLight, PicturesOfSmallLightsKeepTheirFlux) {
-    // The flux of light from one direction is its irradiance of a surface across; so is that of a
-    // sun, but for the cosine over half a degree.
+    // The flux of light from one direction is its irradiance on a surface across it. The same holds
+    // for a sun, but for the cosine over half a degree.
     for (const char* spec : {"directional:elevation=33,azimuth=71,irradiance=1/2/4",
                              "sun:elevation=33,azimuth=71,irradiance=1/2/4"}) {
         const Rgb flux = fluxOf(viewerLight(parseLights(spec), 4));

@@ -1,5 +1,5 @@
-// SPIR-V modules as their users take them: valid by spirv-val, with the interface that is
-// documented by spirv-dis, and values on Vulkan as those of the library in double precision.
+// SPIR-V modules as their users take them: valid by spirv-val, with the documented interface by
+// spirv-dis, and with the library's values, in double precision, on Vulkan.
 #include "../forms/form_samples.h"
 #include "../shaders/runners.h"
 #include "../shaders/variants.h"

@@ -104,7 +104,7 @@ struct Timed {
     bool software;
     float repeats = 1;
 
-    /// Seconds of an evaluation; on a renderer in software those of the processor, by all threads.
+    /// Seconds of an evaluation; for a renderer in software, processor seconds of all threads.
     double once() {
         const std::clock_t before = std::clock();
         double seconds = program.run(static_cast<std::uint32_t>(pixels / 64));
@@ -138,8 +138,8 @@ std::vector<double> medians(std::vector<Timed>& all) {
     return result;
 }
 
-/// Times of a million evaluations less those of the first shader, and their ratio to the second and
-/// the third.
+/// Times of a million evaluations less the time of the first shader, and their ratios to the second
+/// and to the third time.
 void printTimes(const std::vector<KeptShader>& kept, const gpu::ComputeDevice& device) {
     std::vector<Timed> all;
     for (const KeptShader& one : kept) {

@@ -48,7 +48,7 @@ std::vector<double> expected(const gpu::FormPayload& payload, const Pairs& pairs
 }
 
 /// Relative to 1 + |f|: the form keeps ln(1 + f), which single precision rounds. Where f
-/// cos(theta_i) was projected, differences are those of f cos(theta_i).
+/// cos(theta_i) was projected, f cos(theta_i) is compared.
 Wanted wantedOf(const std::vector<double>& expected, const ShaderJob& job) {
     const bool cosine = job.payload.head.quantity == Quantity::brdfCosine;
     std::vector<double> scales;

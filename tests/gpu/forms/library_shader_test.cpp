@@ -83,8 +83,9 @@ Direction rounded(const Direction& d) {
     return {part(d.x), part(d.y), part(d.z)};
 }
 
-/// Those of all forms; of every four, one of mirror directions, one within a thousandth of a radian
-/// of these, and one with wi within a tenth of a degree of the horizon.
+/// The pairs of directionPairs(), with changes to three of every four: one has mirror directions,
+/// one is within a thousandth of a radian of these, and one has wi within a tenth of a degree of
+/// the horizon.
 Pairs pairsWithLobes() {
     Pairs pairs = directionPairs();
     for (std::size_t k = 0; k < pairs.wi.size(); ++k) {

@@ -157,8 +157,8 @@ Gap gapOf(const Proof& proof, const std::vector<float>& found) {
 /// weights of 8 bits.
 constexpr Bounds bounds{2e-3, 5e-2};
 
-/// Differences of f relative to f + 0.001, which are those of ln(f + 0.001) as long as both are
-/// small.
+/// Differences of f relative to f + 0.001, which equal differences of ln(f + 0.001) as long as both
+/// are small.
 Wanted wantedOf(const Proof& proof) {
     std::vector<double> scales = proof.expected;
     for (double& scale : scales) scale += 1e-3;

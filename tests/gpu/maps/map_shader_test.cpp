@@ -54,7 +54,7 @@ ShaderJob jobOf(const MaterialMap& map, Wrap wrap) {
     return job;
 }
 
-/// The coefficients at a place: sums of those of texels.
+/// The coefficients at a place: weighted sums of the coefficients of texels.
 Coefficients blended(const MaterialMap& map, const MapPlace& place, Wrap wrap) {
     Coefficients sum;
     for (const MapCorner& corner : mapCorners(map.sidecar().levels, place, wrap)) {

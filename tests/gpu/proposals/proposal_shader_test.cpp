@@ -108,8 +108,8 @@ void comparePairs(const SampleCase& one, const ShaderJob& job, const std::vector
                                         one.sampler->pdf(job.pairs.wo[k], job.pairs.wi[k])));
 }
 
-/// Of all jobs at once: the library's densities of the pairs, and the directions that it draws with
-/// the same numbers. Densities of drawn directions and values have no fixed number.
+/// The expected outputs of all jobs: the library's densities of the pairs, and the directions that
+/// it draws with the same numbers. Densities of drawn directions and values are not compared here.
 Wanted wantedOf(const SampleCase& one, const std::vector<ShaderJob>& jobs) {
     Wanted wanted;
     for (std::size_t j = 0; j < jobs.size(); ++j) {

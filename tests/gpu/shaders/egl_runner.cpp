@@ -289,8 +289,8 @@ bool has(const char* words, std::string_view word) {
     return words != nullptr && std::string_view(words).find(word) != std::string_view::npos;
 }
 
-/// The displays that need no window: those of devices, GPUs first, and Mesa's for its renderer in
-/// software.
+/// The displays that need no window: the displays of devices, GPUs first, and Mesa's display for
+/// its renderer in software.
 std::vector<EGLDisplay> displays(Choice kind) {
     const auto getDisplay = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(
         eglGetProcAddress("eglGetPlatformDisplayEXT"));

@@ -26,7 +26,7 @@ std::unique_ptr<gpu::ComputeDevice> vulkanDevice(bool validate);
 /// Runs a shader on the device of its interface: the software renderer, or with HSHFIT_TEST_GPU set
 /// a GPU. Throws Missing where there is none.
 std::vector<float> runHere(const BoundShader& shader);
-/// Where HSHFIT_KEEP_SHADERS names a folder, writes the shader that ran last there.
+/// If HSHFIT_KEEP_SHADERS names a folder, writes the shader that ran last there.
 void keepLast(const std::string& kind, gpu::Language language, const std::string& name,
               const Wanted& wanted, const Bounds& bounds);
 
@@ -35,13 +35,13 @@ struct TimedCall {
     int place = 0;  ///< of its row in the table
     std::string name, snippet;
     std::string before = {};  ///< declarations
-    /// Of wo and wi in the local frame, or of the normal n and the viewer in the world; `material`
-    /// is a number below 8.
+    /// The expression. It may use wo and wi in the local frame, or the normal n and the viewer in
+    /// the world; `material` is a number below 8.
     std::string call = "hsh_eval(wo, wi)";
 };
-/// Where HSHFIT_KEEP_SHADERS names a folder, writes a shader there that evaluates the call as often
-/// as its input says, for every pixel of a square (tests/gpu/device/timed.mustache). `resources`
-/// are those of the snippet.
+/// If HSHFIT_KEEP_SHADERS names a folder, writes a shader there that evaluates the call as often as
+/// its input says, for every pixel of a square (tests/gpu/device/timed.mustache). The snippet needs
+/// `resources`.
 void keepTimed(const TimedCall& timed, std::vector<gpu::ComputeResource> resources);
 
 /// Vulkan: texture arrays at bindings 0 (coefficients) and 2 (basis), combined with their sampler

@@ -47,7 +47,7 @@ struct ShaderJob {
     /// For a form (gpu/forms): where its numbers are, "constants", "block" or "texture"; it
     /// has no light, and evalRaw is eval. `payload` has the head and the texels.
     std::string form = {};
-    /// Three uniform numbers in place of wi; outputs are those of tests/gpu/proposals.
+    /// Three uniform numbers in place of wi; outputs are as in tests/gpu/proposals.
     bool sampling = false;
     /// For a map of materials: its levels after the first, which is in `payload` with what the
     /// texels share as its basis texels, and u, v and level of each pair, which snippets take

@@ -11,7 +11,7 @@ namespace {
 
 using gpu::Language;
 
-/// A way to check a language; the name is that of its tests.
+/// A way to check a language; its tests have the name.
 struct Way {
     std::string name;
     Language language;

@@ -1,5 +1,5 @@
-// Slang modules: their differentiable functions, what slang_rules.h finds, and those of lighting as
-// HLSL. That the others run as HLSL is held where the other languages are.
+// Slang modules: their differentiable functions, the findings of slang_rules.h, and modules of
+// lighting run as HLSL. The tests of the other languages run the other modules as HLSL.
 #include "../forms/form_samples.h"
 #include "runners.h"
 #include "slang_rules.h"

@@ -12,9 +12,9 @@ using gpu::pack;
 using gpu::Packing;
 using samples::asymmetric;
 
-/// Random in the slots and channels, but as smooth over the map as those of a BRDF are: single
-/// precision places a lookup 3e-6 of a texel off (shader_proof_test.cpp), which white noise would
-/// show.
+/// Coefficients that are random in the slots and channels, but over the map as smooth as a BRDF's:
+/// single precision places a lookup 3e-6 of a texel off (shader_proof_test.cpp), which white noise
+/// would show.
 Coefficients smooth(const std::string& basis, int order, const OutgoingSet& outgoing,
                     const Channels& channels, std::uint64_t seed, bool condonShortley = false) {
     Coefficients c = asymmetric(basis, order, outgoing, channels, seed, condonShortley);

@@ -18,7 +18,7 @@ gpu::DeviceChoice::Kind deviceOfTests() {
 BoundShader lastRun;
 std::vector<float> lastFound;
 
-/// The textures of a job, with those of fragment shaders at `basis` and `harmonics`.
+/// The textures of a job, with basis texels at binding `basis` and harmonics at `harmonics`.
 std::vector<gpu::ComputeResource> texturesOf(const ShaderJob& job, Kind texture,
                                              std::uint32_t basis, std::uint32_t harmonics) {
     std::vector<gpu::ComputeResource> resources;

@@ -105,7 +105,7 @@ inline float levelOf(const stub::Array* map, float width) {
     return static_cast<float>(map->levels - 1);
 }
 
-/// Keys and modes are those of OSL (stdlib.md, "Texture"); OSL itself ignores an unknown mode.
+/// Takes the keys and modes of OSL (stdlib.md, "Texture"); OSL itself ignores an unknown mode.
 inline color texture(string map, float u, float v, float width, float, float, float,
                      const char* key, int subimage, const char* interp, const char* mode,
                      const char* wrap, const char* wrapMode, const char* rest, float& alpha) {
