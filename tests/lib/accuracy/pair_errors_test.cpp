@@ -75,7 +75,7 @@ TEST(PairSummary, IndependentSamplesAgreeWithinTheirErrors) {
     agree(a.albedo, b.albedo);
 }
 
-/// The albedo beside the largest difference is that of the reference in the same stratum.
+/// The albedo stated beside the largest difference is the reference's in the same stratum.
 TEST(PairSummary, StatesTheAlbedoThatIsOff) {
     // f = (1 + cos theta_o) / pi has the albedo 1 + cos theta_o; g has it everywhere but low down.
     const double edge = 1.0 / 16;

@@ -13,7 +13,7 @@ TEST(AngleBetween, IsTheAngleToTheLastDigitsFromNothingToHalfATurn) {
     for (const double angle : {0.0, 1e-150, 1e-12, 1e-8, 1e-4, 0.5, pi / 2, 3.0}) {
         const Direction turned{std::sin(angle), 0, std::cos(angle)};
         EXPECT_NEAR(angleBetween({0, 0, 1}, turned), angle, 4 * eps * angle) << angle;
-        // the rest of a half turn, whose own rounding is that of pi
+        // the rest of a half turn, which is rounded like pi
         EXPECT_NEAR(angleBetween({0, 0, -1}, turned), pi - angle, 4 * eps * pi) << angle;
     }
 }

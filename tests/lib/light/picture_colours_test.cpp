@@ -111,7 +111,7 @@ TEST_F(PictureColours, LayersAreReadByTheirOnlyColoursOrByName) {
                                            "ViewLayer.Combined.R", "ViewLayer.Depth.Z"},
                                           1}})),
               (Pixel{3, 2, 1}));
-    // Those without a layer go before others.
+    // Channels without a layer go before others.
     EXPECT_EQ(firstPixel(write("d.exr", {{"", {"B", "G", "R", "gi.B", "gi.G", "gi.R"}, 1}})),
               (Pixel{3, 2, 1}));
     const std::string two = write("two.exr", {{"", {"a.B", "a.G", "a.R", "b.B", "b.G", "b.R"}, 1}});

@@ -41,8 +41,9 @@ PictureLight picture(PictureLayout layout, std::size_t width, std::size_t height
     return light;
 }
 
-/// The directions to which a placement of the specification takes those of the light, by rotation
-/// matrices written out here: the mirror, Rodrigues' formula about the axis, the turn about +z.
+/// The direction to which a placement of the specification takes a direction of the light, by
+/// rotation matrices written out here: the mirror, Rodrigues' formula about the axis, the turn
+/// about +z.
 using Way = std::function<Direction(const Direction&)>;
 Way wayOf(bool mirror, Direction axis, double tilt, double turn) {
     return [=](Direction d) {
@@ -105,7 +106,7 @@ TEST(PicturePlacement, MirroredTwiceIsTheLightAgainAlsoAfterTurns) {
     }
 }
 
-/// The series of the moved light at moved directions is that of the light at rest.
+/// The series of the moved light at moved directions equals the series of the light at rest.
 TEST(PicturePlacement, CoefficientsMoveExactly) {
     const auto harmonics = bases::makeSh(6, {});
     const auto series = [&](const LightCoefficients& c, const Direction& d) {

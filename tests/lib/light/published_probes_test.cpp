@@ -1,6 +1,6 @@
 // The nine coefficients that Ramamoorthi & Hanrahan (2001) published for Debevec's probes, from the
-// pictures of these probes. The pictures have another scale and resolution than those of 2001: one
-// factor for each, and 1 % of the norm.
+// pictures of these probes. The pictures have another scale and resolution than the pictures of
+// 2001: hence one factor for each, and a tolerance of 1 % of the norm.
 
 #include <hshfit/bases/sh.h>
 #include <hshfit/irradiance/irradiance.h>

@@ -129,8 +129,8 @@ TEST_F(SunSplits, TheSumHasTheCoefficientsOfThePicture) {
     }
 }
 
-/// The irradiance of any surface that the sun shines on from above its horizon is that of bands 0
-/// and 1 by the sun, and the same sky.
+/// For any surface with the whole sun above its horizon, the irradiance that the rest of the
+/// picture lacks is the irradiance by the sun that was split off.
 TEST_F(SunSplits, IrradiancesOfBothPartsAddUp) {
     const Direction centre = directionFromAngles(radians(50), -0.7);
     const PictureGeometry geometry{.width = 128, .height = 64};
@@ -160,7 +160,7 @@ TEST_F(SunSplits, IrradiancesOfBothPartsAddUp) {
     for (std::size_t k = 0; k < picture.rgb.size(); ++k) EXPECT_LE(rest.rgb[k], picture.rgb[k]);
 }
 
-/// All pixels but the sun's are those of the picture; the sun's are like the sky about it.
+/// All pixels but the sun's are as in the picture; the sun's are like the sky about it.
 TEST_F(SunSplits, TheRestIsThePictureWithTheSkyInPlaceOfTheSun) {
     const Direction centre = directionFromAngles(radians(50), -0.7);
     const std::string path = write("sun.exr", {.width = 256, .height = 128},

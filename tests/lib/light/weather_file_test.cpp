@@ -126,7 +126,7 @@ TEST(WeatherFile, LightsHaveItsIrradianceAndTheSunOfItsPlace) {
         // The sum is the global irradiance of the hour.
         const double global = irradiance("perez:" + fromFile + "+sun:" + fromFile, {});
         EXPECT_NEAR(global, diffuse + direct * sun.towards.z, 1e-4 * global);
-        // A stated irradiance of the sun replaces that of the file.
+        // A stated irradiance of the sun replaces the file's.
         EXPECT_NEAR(irradiance("sun:" + fromFile + ",irradiance=7", across(sun.towards)), 7, 2e-5);
         EXPECT_NEAR(irradiance("perez:" + fromFile + ",scale=2,turn=30", {}), 2 * diffuse,
                     4e-6 * diffuse);

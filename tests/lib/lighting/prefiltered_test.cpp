@@ -232,7 +232,7 @@ TEST(PrefilteredLobes, SixLobesInThePlaneOfIncidence) {
 }
 
 /// Under uniform light no turn is seen, and under one direction every band counts alike: the error
-/// is that of the coefficients themselves.
+/// of the lit lobes is the error of the coefficients themselves.
 TEST(PrefilteredLobes, TurnedErrorsAreThoseOfTheCoefficients) {
     const test::FormulaBrdf brdf(
         [](const Direction& wi, const Direction& wo) {

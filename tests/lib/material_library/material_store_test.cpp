@@ -87,7 +87,7 @@ TEST(MaterialStore, GivesBackMaterialsInTheOrderOfTheirNames) {
     EXPECT_EQ(own.error.flip, 0.2);
 }
 
-/// Kilobytes of this process that are not those of files.
+/// Kilobytes of this process without mapped files.
 long ownKilobytes() {
     std::ifstream status("/proc/self/status");
     std::string word;

@@ -51,7 +51,7 @@ void expectArea(const std::string& bytes, double area, std::size_t triangles) {
 
 using Outline = std::vector<std::array<double, 2>>;
 
-/// In the plane z = 2 x - y + 1, whose areas are sqrt(6) times those of the outline.
+/// The outline as a face in the plane z = 2 x - y + 1, where areas are sqrt(6) times as large.
 std::string obj(const Outline& outline) {
     std::string text, face = "f";
     for (std::size_t k = 0; k < outline.size(); ++k) {

@@ -246,7 +246,7 @@ TEST(GltfMesh, NodesPlaceMeshesAndMirrorsKeepTheirFront) {
     }
 }
 
-/// Normals of a sphere that is stretched, turned and mirrored are those of the ellipsoid.
+/// Normals of a sphere that is stretched, turned and mirrored are normals of the ellipsoid.
 TEST(GltfMesh, NormalsFollowTheirSurface) {
     const Mesh sphere = sphereMesh(2);
     std::vector<float> places;

@@ -107,7 +107,8 @@ void expectCube(const MeshFile& file) {
     EXPECT_EQ(file.degenerate, 0u);
     EXPECT_TRUE(file.computedNormals);
     EXPECT_NEAR(area(mesh), 24, 1e-6);
-    // Edges of 90 degrees are creases: every normal is that of its face, and points outwards.
+    // Edges of 90 degrees are creases: vertices have the normal of their face, which points
+    // outwards.
     for (std::size_t t = 0; t < 12; ++t) {
         for (std::size_t k = 0; k < 3; ++k) {
             const MeshVector& n = mesh.normals[3 * t + k];

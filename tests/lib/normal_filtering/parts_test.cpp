@@ -119,7 +119,7 @@ TEST(GatheredTexels, OfPartsAreThoseOfTheWhole) {
         for (std::size_t s = 0; s < whole.texel(k).base.size(); ++s)
             EXPECT_EQ(whole.texel(k).base[s].normal.y, all.texel(k).base[s].normal.y);
     }
-    // The mean of the last is that of all texels.
+    // The mean of the last texel is the mean of all texels.
     double mean = 0;
     for (const SurfaceTexel& texel : texels) mean += texel.weights[0];
     EXPECT_NEAR(all.texel(3).mean.weights[0], mean / static_cast<double>(texels.size()), 1e-12);

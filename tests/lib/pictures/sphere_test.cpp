@@ -278,7 +278,8 @@ TEST(Sphere, AHighlightOnBlackIsNotExposedAtRounding) {
     spot.coverage.assign(100, 1.0F);
     spot.radiance.assign(300, 1e-12F);
     spot.radiance[0] = 4;
-    // 0.8 is a radiance that is the first step above black where that of 4 is white.
+    // The exposure takes the radiance `shown` to 0.8. Where 4 is white, `shown` is the first step
+    // above black.
     const double shown = 0.8 / std::exp2(automaticExposure({&spot, 1}));
     EXPECT_EQ(encoded(0.95 * shown / 4), 1);
     EXPECT_EQ(encoded(0.4 * shown / 4), 0);

@@ -50,7 +50,8 @@ TEST(Convergence, ExponentialErrorsAreNotTakenForChanges) {
     EXPECT_GE(estimate(error, 5, false).stated, error(3) - error(4));
 }
 
-/// After one change the error stated is that of the level before, three times over.
+/// After one change the stated error is three times that change, which is about the error of the
+/// level before.
 TEST(Convergence, EarlyErrorsCoverExponentialOnesAndAccidents) {
     EXPECT_TRUE(std::isinf(earlyError({}).expected));
     for (const double rate : {2.0, 3.0, 4.0, 5.0}) {

@@ -266,7 +266,7 @@ TEST(LitPicture, AnEndOfTheTimeLeavesAWholePictureWithItsError) {
     EXPECT_GT(over.error, 5e-3);
     EXPECT_LE(over.largest.error, 0.5);
     EXPECT_LT(differenceOf(truth.picture, over.picture).relativeL2, 0.05);
-    // A day is enough: the picture is that of the bound.
+    // A day is enough: the picture reaches the bound.
     const LitPicture ample = by(5e-3, TimeLimit(86400.0));
     EXPECT_EQ(ample.early, 0u);
     EXPECT_LE(ample.largest.error, 5e-3);
@@ -331,9 +331,9 @@ TEST(LitPicture, ManyPointsUnderAPictureHaveTheirOwnRadiance) {
     EXPECT_LT(largest, 10 * tolerance);
 }
 
-/// Every 17th pixel of a picture against a finer integral of its own: the largest error over the
-/// radiance or a twentieth of its mean, and the evaluations of all points over those of their own
-/// integrals.
+/// Every 17th pixel of a picture against a finer integral of its own. `error` is the largest,
+/// relative to the radiance or to a twentieth of the mean radiance if that is more. `work` is the
+/// number of evaluations for the picture over the number that an integral at each point takes.
 struct OwnIntegrals {
     double error = 0, work = 0;
 };

@@ -308,7 +308,7 @@ TEST(Halfway, FitRecoversWhatItsFormHolds) {
     for (const HalfwaySymmetry& s : symmetries) {
         const HalfwayOrders orders = s.isotropic ? HalfwayOrders{6, 4, 4} : HalfwayOrders{5, 3, 3};
         const auto brdf = asBrdf(inSpan(orders, s, 1));
-        // The lobe's width is one of a set, not that of the source: near, not exact.
+        // The lobe's width is one of a set, not the width of the source: near, not exact.
         const double error = halfwayError(*brdf, projectHalfway(*brdf, orders));
         const double fewer = halfwayError(*brdf, projectHalfway(*brdf, {2, 1, 1}));
         EXPECT_LT(error, s.isotropic ? 6e-3 : 8e-3);

@@ -135,7 +135,7 @@ TEST(Proposal, SamplesFollowTheDensityBetweenItsRows) {
         }
 }
 
-/// With rows in between, shares and widths are means; at the ends they are those of the last row.
+/// Between rows, shares and widths are means of both rows; at a row they are the row's own.
 TEST(Proposal, IsInterpolatedBetweenRowsAndContinuous) {
     const Proposal proposal = fitProposal(visibleGgx(.1));
     const std::size_t rows = proposal.rows.size();

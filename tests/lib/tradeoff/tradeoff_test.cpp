@@ -157,8 +157,8 @@ TEST(Pairs, IntegrateProductsOfCosines) {
     EXPECT_NEAR(mean([](auto wi, auto) { return wi.z; }), 0.5, 2e-3);
     EXPECT_NEAR(mean([](auto wi, auto wo) { return wi.z * wo.z; }), 0.25, 2e-3);
     EXPECT_NEAR(mean([](auto wi, auto) { return wi.z * wi.z; }), 1.0 / 3, 2e-3);
-    // Azimuths of wi and wo are independent: the mean of their cosines' product is 0, and that of
-    // (sin sin cos(phi_i - phi_o))^2 is (2/3)(2/3)/2.
+    // Azimuths of wi and wo are independent: the mean of sin sin cos(phi_i - phi_o) is 0, and the
+    // mean of its square (2/3)(2/3)/2.
     const auto plane = [](auto wi, auto wo) { return wi.x * wo.x + wi.y * wo.y; };
     EXPECT_NEAR(mean(plane), 0, 2e-3);
     EXPECT_NEAR(mean([&](auto wi, auto wo) { return std::pow(plane(wi, wo), 2); }), 2.0 / 9, 2e-3);

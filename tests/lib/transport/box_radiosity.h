@@ -101,7 +101,7 @@ struct Place {
 };
 
 /// The mean radiance that leaves a surface after exactly `bounce` reflections, by a path from each
-/// of its places; the error is that of the scatter between them.
+/// of its places; the error follows from the scatter between them.
 template <class PlaceOf>
 PathEstimate meanOverPlaces(const SurfaceScene& scene, int bounce, int paths, PlaceOf&& placeOf) {
     PathEstimate result;

@@ -31,7 +31,7 @@ struct Quad {
         return (1 - a) * ((1 - b) * corners[0] + b * corners[3]) +
                a * ((1 - b) * corners[1] + b * corners[2]);
     }
-    /// The area of the surface over that of (a, b).
+    /// d area of the surface / (da db).
     double stretch(double a, double b) const {
         const Direction n =
             cross((1 - b) * (corners[1] - corners[0]) + b * (corners[2] - corners[3]),
@@ -44,8 +44,8 @@ struct Quad {
     }
 };
 
-/// The box from a folder with its meshes. Reflectances are those of the published measurements in
-/// RGB; the lamp has radiance 1.
+/// The box from a folder with its meshes. Reflectances are the published measurements in RGB; the
+/// lamp has radiance 1.
 class CornellBox {
 public:
     static constexpr std::size_t objects = 8, lamp = 7;
@@ -98,7 +98,7 @@ public:
     }
 
     /// The mean radiance that leaves an object after exactly `bounce` reflections, by paths from
-    /// places all over it; the error is that of the scatter between places.
+    /// places all over it; the error follows from the scatter between places.
     PathEstimate traced(const SurfaceScene& scene, std::size_t object, int bounce,
                         int paths) const {
         std::vector<Quad> own;

@@ -219,7 +219,7 @@ TEST(TracePaths, GiveTheSamePictureOnAnyNumberOfThreads) {
     EXPECT_EQ(many.rays, single.rays);
 }
 
-/// A pixel's standard error is that of the scatter of its mean over seeds.
+/// A pixel's standard error agrees with the scatter of its mean over seeds.
 TEST(TracePaths, StateTheErrorOfAPixel) {
     const SurfaceScene scene({materialOf("lambert:kd=.5")}, {{"ball", sphereMesh(3), 0, {}}},
                              parseLights("sky:type=12,elevation=40").lights);

@@ -203,7 +203,7 @@ TEST(CostPrediction, LeavesMaterialsInFewPixelsToSampling) {
     EXPECT_EQ(predictCosts(cache, many, 4)[0].pixels, 0);
 }
 
-/// The number of records, and the error of sampling, against those of a picture.
+/// The predicted number of records and error of sampling against what a picture has.
 TEST(CostPrediction, IsThatOfThePicture) {
     const auto scene = litRoom();
     RadianceCache cache(*scene,

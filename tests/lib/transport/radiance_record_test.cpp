@@ -124,7 +124,7 @@ double bendError(bool board, const IncomingFunctions& functions, int rays) {
                                                 (ne[i] - nw[i] - se[i] + sw[i]) / 4,
                                                 north[i] - 2 * middle[i] + south[i]};
         for (const std::size_t k : {0U, 1U, 2U}) {
-            // A record has those of R, G and B together.
+            // A record sums the derivatives of R, G and B.
             const double expected = 3 * differences[k] / (h * h);
             const double off = static_cast<double>(found.bends[k * size + i]) - expected;
             error += off * off;
