@@ -160,7 +160,7 @@ TEST_F(Agreement, OfAPlanWithTheFileThatItWrites) {
               choice["pairs"]);
 }
 
-/// The options of a choice of `plan` as those of `tradeoff`, which are lists.
+/// The options of a choice of `plan` as options of `tradeoff`, which are lists.
 std::string asSweep(const std::string& options) {
     std::string sweep = " ";
     std::istringstream words(options);

@@ -47,8 +47,8 @@ protected:
 
 constexpr const char* quick = " --kinds model,lobes,gltf";
 
-/// FLIP, false dip and peak of each row are those of `compare` for what its command writes, and
-/// bytes of coefficients those that `project` states.
+/// FLIP, false dip and peak of each row are what `compare` says of the file that the row's command
+/// writes, and bytes of coefficients are what `project` states.
 TEST_F(ChooseCommand, StatesTheErrorsAndBytesOfWhatItsCommandsWrite) {
     const Json answer = choose(matte);
     std::set<std::string> kinds;
@@ -88,7 +88,7 @@ TEST_F(ChooseCommand, StatesTheErrorsAndBytesOfWhatItsCommandsWrite) {
                                             "coefficients"}));
 }
 
-/// A metal's colour is that of F0, which goes to white at the horizon.
+/// A metal has the colour of F0, which goes to white at the horizon.
 TEST_F(ChooseCommand, FitsOfLobesHoldAColouredMetal) {
     const Json answer = choose("ggx:alpha=.3,F0=.9/.6/.3 --kinds lobes");
     EXPECT_EQ(answer["rows"].size(), 4);

@@ -52,8 +52,8 @@ bool reads(const Command& user, const Command& maker) {
 
 class CommandTable : public Cli, public testing::WithParamInterface<Command> {
 protected:
-    /// Runs the example in a folder that has those of the repository, after the examples that write
-    /// its inputs.
+    /// Runs the example in a folder that has the repository's examples/, after the examples that
+    /// write its inputs.
     void runExample(const Command& command) {
         for (const Command& other : commands())
             if (reads(command, other)) runExample(other);

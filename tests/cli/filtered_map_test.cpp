@@ -127,8 +127,8 @@ TEST_F(FilteredMap, TexelsAreTheirModelInTurnedFrames) {
     }
 }
 
-/// Every file of an export keeps its schema, textures are the map's own, and test values are those
-/// of `eval` at centres of texels, times cos(theta_i).
+/// Every file of an export keeps its schema, textures are the map's own, and test values are the
+/// answers of `eval` at centres of texels, times cos(theta_i).
 TEST_F(FilteredMap, ExportsKeepTheirSchemasAndTheirValuesAreThoseOfEval) {
     writeVectors("n.pfm", 8, 4, [](int x, int y) {
         return unit({0.3 * std::sin(x * 1.7), 0.2 * std::cos(y * 1.3), 1});
@@ -181,7 +181,7 @@ TEST_F(FilteredMap, ExportRefusesWhatFilteredMapsDoNotHave) {
         EXPECT_EQ(std::count(answer.err.begin(), answer.err.end(), '\n'), 1) << answer.err;
         EXPECT_FALSE(std::filesystem::exists(path("out"))) << more;
     }
-    // A sidecar whose terms are not those of its model, or whose lobes are not those of its nodes.
+    // A sidecar with other terms than its model has, or with other lobes than its nodes.
     const auto whole = nlohmann::ordered_json::parse(bytes("map/material.json"));
     for (const char* key : {"terms", "lobes"}) {
         auto json = whole;

@@ -64,7 +64,7 @@ TEST_F(Illuminate, FindsTheRadianceOfAClosedRoom) {
     const Answer single = taken(furnace(), "-o " + path("single") + " --samples 1 --json");
     EXPECT_TRUE(keepsSchema(single.out, "illuminate"));
     EXPECT_TRUE(Json::parse(single.out)["cameras"][0]["standard_error"].is_null());
-    // Against itself the error is 0; against another seed it is that of both.
+    // Against a picture of another seed, the squared errors of both pictures add up.
     const Answer again =
         taken(furnace(), "-o " + path("again") + " --samples 400 --seed 2 --json --reference " +
                              path("out/eye.exr"));

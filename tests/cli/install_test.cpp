@@ -45,7 +45,7 @@ TEST_F(Installation, HasTheManualAndCompletionWhereManAndShellsLook) {
                                                   : "fish/vendor_completions.d/hshfit.fish";
         EXPECT_EQ(read(share / file), run("completion " + shell).out) << file;
     }
-    // The installed pages are those that this program writes, and that of hshfit-mpi.
+    // The installed pages are the pages that this program writes, and the page of hshfit-mpi.
     ASSERT_EQ(run("manual -o " + path("man")).code, 0);
     const std::string differ = "diff -r -x hshfit-mpi.1 " + path("man") + " " +
                                (share / "man").string() + " >" + path("log");

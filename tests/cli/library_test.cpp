@@ -93,7 +93,7 @@ TEST_F(LibraryCommand, OneShaderForAllMaterials) {
                     std::log(f[std::min(c, f.size() - 1)].get<double>() + 1e-3), error["largest"]);
 }
 
-// Without a table the values to test by are those of `eval`, and there is one texture.
+// Without a table the values to test by are the answers of `eval`, and there is one texture.
 TEST_F(LibraryCommand, ExportWritesFunctionsAsConstants) {
     learn("a.library");
     const Json made = answer("export " + path("a.library") + " -o " + path("out") +
@@ -373,7 +373,7 @@ TEST_F(LibraryCommand, LearnsFromTheMaterialsThatTheTimeIsEnoughFor) {
     const std::string said =
         "the time was over after " + std::to_string(learned) + " of 8 materials";
     EXPECT_NE(made.err.find(said), std::string::npos) << made.err;
-    // Those that were read are a library to which the others are added.
+    // The materials that were read are a library to which the others are added.
     std::string rest = "learn";
     for (const Json& spec : document["left_out"]) rest += " '" + spec.get<std::string>() + "'";
     answer(rest + " --add-to " + path("a.library") + " -o " + path("b.library"));

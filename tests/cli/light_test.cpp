@@ -61,7 +61,7 @@ TEST_F(Lights, MixedAnalyticLightsHaveAHealthReport) {
     const Json beam = info("directional:elevation=90,irradiance=3")["light_health"];
     EXPECT_TRUE(beam["peak"][0].is_null());
     EXPECT_NEAR(beam["mean"][0], 3 / (4 * pi), 1e-12);
-    // A wide sun and a panel before a uniform sky: mean radiance and black share are those of their
+    // A wide sun and a panel before a uniform sky: mean radiance and black share follow from their
     // solid angles, 2 pi (1 - cos r) and 4 atan(a b / sqrt(1 + a^2 + b^2)).
     const double cap = 2 * pi * (1 - std::cos(10 * pi / 180));
     const Json disc = info("sun:elevation=35,azimuth=77,angle=20,radiance=5")["light_health"];
@@ -211,7 +211,8 @@ TEST_F(Lights, FilesOfCoefficientsAreLights) {
               0);
     EXPECT_EQ(info(path("turned.json"))["lights"][0]["domain"], "sphere");
 
-    // The nine coefficients are those of the file, turned or not.
+    // The nine coefficients of the file are the sky's; a file that was turned, and a turn of the
+    // file, give the same.
     const auto nine = [&](const std::string& spec) {
         const Answer answer = run("irradiance --normals 64 --json '" + spec + "'");
         EXPECT_EQ(answer.code, 0) << answer.err;

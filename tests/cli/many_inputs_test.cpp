@@ -92,7 +92,7 @@ TEST_F(ManyInputs, AReportLeavesOutWhatFailed) {
     EXPECT_EQ(document["reports"][1]["brdf"], "phong:exponent=5");
 }
 
-/// Inputs of a folder as that of docs/reference/commands.md: two measured files, coefficients,
+/// A folder of inputs like the one in docs/reference/commands.md: two measured files, coefficients,
 /// others.
 class ManyFiles : public Cli {
 protected:

@@ -66,7 +66,7 @@ TEST_P(MapExportForms, FilesKeepTheirSchemasAndHoldTheTexels) {
     EXPECT_TRUE(keepsSchema(read(path("out/material_test.json")), "gpu_map_test"));
 }
 
-/// The values of an export at centres of texels are those of `eval` of that texel.
+/// The test values of an export at centres of texels are the answers of `eval` for the texel.
 TEST_P(MapExportForms, ValuesAreThoseOfEval) {
     const std::string map = made(GetParam());
     ASSERT_EQ(run("export " + map + " -o " + path("out")).code, 0);

@@ -126,8 +126,8 @@ TEST_F(Cli, BrushedMetalsAreTurnedInOpenpbr) {
     }
 }
 
-// A preset of a fit states its data; another model is fitted; both losses are those of compare's
-// pairs, and name a maximum.
+// A material of another model is fitted. The losses are over the pairs of `compare`, name a
+// maximum, and stand in the answer and in the files.
 TEST_F(Cli, LossIsStatedInAnswerAndFiles) {
     const Answer answer =
         run("export ggx:alpha=.3,F0=.9/.6/.3,kd=.05 --target gltf,materialx --extensions none "

@@ -130,7 +130,7 @@ TEST_F(SvbrdfLibrary, AGivenLibraryServes) {
     EXPECT_NE(other.err.find("another basis"), std::string::npos) << other.err;
 }
 
-/// The map is that of a call without the limit.
+/// The map has the same bytes as by a call without the limit.
 TEST_F(SvbrdfLibrary, SecondsEndTheMeasuring) {
     describe();
     for (const std::string form : {"library", "low-rank", "halfway"}) {

@@ -224,8 +224,8 @@ TEST_F(Svbrdf, KtxParseFindsTheLevels) {
     EXPECT_NEAR(Json::parse(answer.out)["values"][0], f, 1e-6);
 }
 
-/// Two materials: each texel is the halfway form that `project` gives for its own, which has the
-/// narrow lobe that four bands have not, and a level's that of the mean of both.
+/// Two materials: each texel is the halfway form that `project` gives for its material, which has
+/// the narrow lobe that four bands have not. A texel of level 1 is the form for the mean of both.
 TEST_F(Svbrdf, HalfwayMaterialsAreThoseOfTheTexels) {
     writeMap("alpha.pfm", 4, 2, [](int x, int) { return x % 2 == 0 ? 0.1F : 0.5F; });
     describe("ggx", {{"alpha", {{"map", "alpha.pfm"}}}, {"kd", 0.2}, {"ks", 0.5}});

@@ -98,7 +98,7 @@ TEST_F(TradeoffCommand, MeasuresFormulasAsCompareDoes) {
     expectError(asked + "none,model", 2, "'none' stands alone", 0);
 }
 
-/// Costs are those of `choose` for the same form.
+/// Costs are the same as by `choose` for the same form.
 TEST_F(TradeoffCommand, StatesTheCostsOfShaders) {
     const Answer answer =
         run("tradeoff ggx:alpha=.4 --forms halfway --halfway 5,4,3 --precisions half,unorm8 --json "

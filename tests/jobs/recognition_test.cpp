@@ -21,8 +21,8 @@
 namespace hshfit {
 namespace {
 
-/// Beginnings that other formats have, or that once were taken for theirs. Those of MERL slices may
-/// be any number, and those of UTIA too.
+/// Beginnings of files that other formats have, or that once were taken for theirs. Files of MERL
+/// slices and of UTIA may begin with any number.
 std::vector<std::string> beginnings() {
     std::vector<std::string> all{"\n{",           " {",    "{\"",   "{\n\"", "{ }",
                                  "P5\n1",         "P6 2",  "PF\n3", "Pf\n4", "#?=\n",
