@@ -12,7 +12,7 @@ namespace hshfit::brdfs {
 /// turns about +z on its left do not change D; so the form | a 0 b | e 1 f | c g d | is enough, and
 /// interpolates. By rows.
 using AskewLtc = std::array<std::array<double, 3>, 3>;
-/// The same lobe in that form. Throws NumericError for a matrix that takes y to z, or is not
+/// The lobe of `w` in that form. Throws NumericError for a matrix that takes y to z, or is not
 /// finite.
 AskewLtc inStandardForm(const AskewLtc& w);
 double density(const AskewLtc& w, const Direction& d);

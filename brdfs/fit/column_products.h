@@ -15,7 +15,7 @@ struct ColumnSpan {
 void addProducts(const ColumnSpan& a, const ColumnSpan& b, std::size_t length, double* out,
                  std::size_t outStride);
 
-/// The same of a with itself; of the parts above the diagonal some are left as they are.
+/// Adds the products of a with itself; some of the parts above the diagonal are left as they are.
 void addGram(const ColumnSpan& a, std::size_t length, double* out, std::size_t outStride);
 
 }  // namespace hshfit::brdfs

@@ -21,7 +21,7 @@ Eigen::MatrixXd correlatedSpread(
     const FitSamples& samples, std::size_t n,
     const std::function<void(std::size_t v, Eigen::Ref<Eigen::RowVectorXd> row)>& addRow);
 
-/// The same of rows. `shapes`: WeightedRows::place.
+/// The spread by rows that are made already. `shapes`: WeightedRows::place.
 Eigen::MatrixXd correlatedSpread(const FitSamples& samples, const WeightedRows& rows, std::size_t n,
                                  std::size_t shapes);
 

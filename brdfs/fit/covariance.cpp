@@ -11,7 +11,7 @@ constexpr double least = 1e-9;
 
 /// The matrix of the parameters that are not fixed and matter, scaled to a diagonal of 1.
 struct Scaled {
-    std::vector<std::size_t> free, without;  ///< indices; of those that do not matter
+    std::vector<std::size_t> free, without;  ///< indices of parameters that matter, and of the rest
     Eigen::VectorXd scale;
     Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen;
 

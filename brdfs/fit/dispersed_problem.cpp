@@ -280,7 +280,7 @@ WeightedRows DispersedProblem::mixedRows(std::span<const double> coefficients) c
     return result;
 }
 
-// With `inverse`, residuals are those over 1 - leverage, as FitProblem::joint has them.
+// With `inverse`, residuals are divided by 1 - leverage, as by FitProblem::joint.
 Equations DispersedProblem::mixedEquations(std::span<const double> coefficients, bool derivatives,
                                            std::span<const double> inverse) const {
     const WeightedRows rows = mixedRows(coefficients);

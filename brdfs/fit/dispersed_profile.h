@@ -11,7 +11,7 @@ namespace hshfit::brdfs {
 /// cauchy, to a study that has their normal errors. The parameter takes the place of the
 /// coefficient that decides it most, which follows from it and the others; a value for which that
 /// coefficient would leave its bounds is not feasible. `x`: the coefficients at the minimum;
-/// `fixed`: those that bounds hold.
+/// `fixed`: the coefficients that bounds hold.
 void addProfiles(const DispersedProblem& problem, const std::vector<double>& x,
                  const std::vector<bool>& fixed, const UncertaintyOptions& options,
                  Uncertainty& study);

@@ -19,7 +19,7 @@ namespace hshfit::brdfs {
 ///
 /// Samples with stated uncertainties are weighted by 1/sigma^2 (the loss has to be l2): the loss is
 /// the root of the weighted mean square of f - measured, and AIC and BIC are chi-square plus their
-/// terms, because the variance is known. With scans, errors and correlations are those by scan.
+/// terms, because the variance is known. With scans, errors and correlations are by scan.
 ///
 /// With laws over the wavelength, or a metal in the model, it is fitDispersed (dispersion.h).
 ///

@@ -17,7 +17,7 @@ struct FitReport {
     FitOptions options;
     FitResult result;
     std::string sigma, scans;               ///< as they were stated
-    FitSamples const* ofMetrics = nullptr;  ///< those that metrics are of
+    FitSamples const* ofMetrics = nullptr;  ///< the samples that metrics are of
 };
 
 /// {"format": "hshfit-preset", …, "fit": {…}}: opened as a preset by every command. The same for

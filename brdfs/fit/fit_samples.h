@@ -73,7 +73,7 @@ struct FitSamples {
     std::vector<std::size_t> rows;
     std::shared_ptr<const NodeSums> sums = {};
     std::vector<std::size_t> sumRows;  ///< with `sums`: the row of each sample, ascending
-    /// The same at fewer places, for the starts of a search, or none.
+    /// The samples at fewer places, for the starts of a search; or null.
     std::shared_ptr<const FitSamples> fewer = {};
     Channels channels;
     bool isotropic = false;

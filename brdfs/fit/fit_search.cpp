@@ -82,8 +82,9 @@ public:
           shapes_(shapeBounds(problem.sum())),
           joint_(jointBounds(problem.sum(), problem.channels())) {}
 
-    /// From shapes: eliminated if that is the loss itself, else jointly, from the linear parameters
-    /// that elimination gives and from those at its minimum, whichever leads further.
+    /// From shapes, with the linear parameters eliminated if that is the loss itself. Else jointly,
+    /// from the linear parameters that elimination gives for these shapes and from the minimum of
+    /// the eliminated problem, whichever leads further.
     Minimum fromShapes(const std::vector<double>& u, const MinimiseOptions& options) const {
         if (linear_) return eliminated(u, options);
         Minimum direct;
@@ -97,9 +98,9 @@ public:
         return byCost(direct, minimum) ? direct : minimum;
     }
 
-    /// Goes on from shapes with the linear parameters of a minimum, but those that vanish in every
-    /// channel at `lifted`: without its lobe a minimum of a loss that is not linear may be local.
-    /// Nothing if none vanishes.
+    /// Goes on from shapes with the linear parameters of a minimum, except that parameters which
+    /// vanish in every channel start at `lifted`: a minimum without a lobe may be only local if the
+    /// loss is not linear. Nothing if no parameter vanishes.
     std::optional<Minimum> lifted(const std::vector<double>& u, const Minimum& minimum,
                                   const MinimiseOptions& options) const {
         constexpr double lifted = 0.2;

@@ -20,7 +20,7 @@ struct HeldByBounds {
     double projectedGradient = 0;  ///< FitResult::projectedGradient
 };
 
-/// `equations`: those at x, with derivatives.
+/// `equations` are at x, with derivatives.
 HeldByBounds heldByBounds(std::span<const double> x, const Equations& equations,
                           const Bounds& bounds);
 

@@ -199,7 +199,7 @@ private:
             range(degreesText(least[1]), degreesText(most[1])));
     }
 
-    /// The correlations: all of a few parameters, of many those beyond 0.95.
+    /// The correlations: all if parameters are few, else the ones beyond 0.95.
     std::string correlations() const {
         constexpr std::size_t mostColumns = 8, mostPairs = 10;
         constexpr double strong = 0.95;

@@ -21,12 +21,11 @@ std::array<std::vector<float>, 2> ltcPictures(const LtcTable& table);
 ///     .json  one file: pictures, errors, what was fitted (docs/schemas/ltc.schema.json)
 ///     .exr   NAME_1.exr and NAME_2.exr, float32 RGBA
 ///     .dds   NAME_1.dds and NAME_2.dds, float16 RGBA (D3DFMT_A16B16G16R16F), header and order as
-///     in
-///            the published files; values beyond 65504 become 65504
+///            in the published files; values beyond 65504 become 65504
 /// Returns what was written; of two files, both are complete before either has its name.
 /// Throws UsageError for another extension, OutputError.
 std::vector<std::string> writeLtcTable(const LtcTable& table, const std::string& path);
-/// The same into a set, which is yet to be committed.
+/// Writes the table into a set of files that is yet to be committed.
 std::vector<std::string> writeLtcTable(const LtcTable& table, const std::string& path,
                                        FileSet& files);
 

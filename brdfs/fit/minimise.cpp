@@ -104,12 +104,12 @@ constexpr int gaussNewtonIterations = 10;
 /// Relative fall of the cost, and largest component of the gradient in units of the root of its
 /// curvature and of the cost, in which a search counts as settled.
 constexpr double settledTolerance = 1e-7, settledPull = 1e-3;
-/// Points after which a search makes second derivatives anew, for 2 n gradients. Of the level
-/// valleys of SGD 2 takes 0.6 of the time that 1 does; with more, OpenPBR without noise ends in a
+/// Points after which a search makes second derivatives anew, for 2 n gradients. In the level
+/// valleys of SGD, 2 takes 0.6 of the time that 1 does; with more, OpenPBR without noise ends in a
 /// minimum at a bound.
 constexpr int renewal = 2;
-/// The same where they come from fewer samples: made more often, they cost more time than they
-/// save.
+/// Points after which second derivatives by fewer samples are made anew: more often, they cost more
+/// time than they save.
 constexpr int renewalOfFewer = 4;
 
 /// Equations whose matrix has the second derivatives: differences of the gradient, with

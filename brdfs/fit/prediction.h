@@ -43,7 +43,7 @@ struct Prediction {
 /// the fits to resampled data too, where there are any.
 Prediction predict(const FitResult& fit, std::span<const DirectionPair> pairs,
                    bool bootstrap = true);
-/// The same at the samples of a fit; of sums of f (FitSamples::sums) it throws UsageError.
+/// Predicts f at the samples of a fit. Throws UsageError for sums of f (FitSamples::sums).
 Prediction predict(const FitResult& fit, const FitSamples& samples, bool bootstrap = true);
 
 /// The factor of the errors with which bands hold the true f at all these pairs and channels at

@@ -133,7 +133,7 @@ SampleCuts cutsOf(const FitSamples& samples) {
     if (samples.sums) return {};
     SampleCuts incidence = cutsOf(samples, SampleCuts::Of::incidence),
                outgoing = cutsOf(samples, SampleCuts::Of::outgoing);
-    // The samples in cuts, and among those that hold as many, the fewer cuts.
+    // The more samples in cuts the better, then the fewer cuts.
     const auto rank = [](const SampleCuts& cuts) {
         return std::pair{cuts.inPlane, -static_cast<double>(cuts.cuts.size())};
     };

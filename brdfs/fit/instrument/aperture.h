@@ -11,9 +11,9 @@ namespace hshfit::brdfs {
 
 /// The directions that a detector takes in, or that a source shines from, about its nominal
 /// direction n:
-///     cone       those within the half angle of n
-///     rectangle  those through a flat rectangle that n meets at right angles in its middle, whose
-///                sides are seen under half angles along the polar angle and across it
+///     cone       directions within the half angle of n
+///     rectangle  directions through a flat rectangle that n meets at right angles in its middle;
+///                its sides are seen under half angles along the polar angle and across it
 /// At the normal, which has no azimuth, the first side lies along x.
 struct Aperture {
     enum class Shape { point, cone, rectangle };

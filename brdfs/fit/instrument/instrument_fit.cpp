@@ -119,8 +119,8 @@ FittedInstrument fittedAt(const InstrumentProblem& problem, const std::vector<do
     return result;
 }
 
-/// Loss and information criteria; scales without a width are parameters, those with one, and zeros
-/// of angles, are held by it.
+/// Loss and information criteria. Scales without a width count as parameters; scales with a width
+/// do not, and neither do zeros of angles, because the width holds them.
 void addStatistics(const InstrumentProblem& problem, const std::vector<double>& x,
                    FitResult& result) {
     const ReadingRows rows = problem.rows(x, false);

@@ -288,7 +288,7 @@ Equations InstrumentProblem::equations(std::span<const double> x, bool derivativ
     const auto n = static_cast<Eigen::Index>(count_);
     Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(n, n);
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
-    // For each scan: the products of the slopes by its scale with those by x, and its square.
+    // For each scan: the products of the slopes by its scale and by x, and the square by its scale.
     const bool scales = readings_.instrument.scales;
     Eigen::MatrixXd across =
         Eigen::MatrixXd::Zero(n, scales ? static_cast<Eigen::Index>(scanCount_) : 0);

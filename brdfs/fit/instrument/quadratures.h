@@ -19,7 +19,7 @@ struct Quadratures {
     /// Whether they keep the tolerance for this material; else they do afterwards. Throws
     /// NumericError where no quadrature does.
     bool refine(const Brdf& material, const FitSamples& samples, const Instrument& instrument);
-    /// States those over `averaged` samples.
+    /// States the quadratures over `averaged` samples.
     void describe(const FitSamples& averaged, FittedInstrument& result) const;
 };
 

@@ -25,7 +25,8 @@ struct AngleZeros {
 /// horizon stays on it.
 FitSamples turned(const FitSamples& samples, std::span<const AngleZeros> zeros);
 
-/// The cosines of turned samples over those by which their readings were divided: a factor of f.
+/// The cosines of turned samples over the cosines that their readings were divided by: a factor of
+/// f.
 std::vector<double> cosineRatios(const FitSamples& turned, const FitSamples& stated,
                                  Cosines cosines);
 
