@@ -14,7 +14,7 @@ namespace hshfit::brdfs {
 /// sin = eta, on.
 double dielectricReflectance(double cosine, double eta);
 
-/// The same for an absorbing medium; k = 0 is the dielectric.
+/// The mean reflectance of an absorbing medium; k = 0 is the dielectric.
 double conductorReflectance(double cosine, double eta, double k);
 
 /// ((eta - 1)^2 + k^2)/((eta + 1)^2 + k^2), which both have at cosine 1.

@@ -18,9 +18,9 @@ namespace hshfit::brdfs {
 /// turns it from the tangent towards the bitangent, in radians.
 ///
 /// Iridescence: with i = iridescenceFactor, the reflectances c + (1 - c) w of the metal and
-/// specular (F0 + (1 - F0) w) of the dielectric, in the layer too, become those mixed with R of
-/// thin_film.h by i, of f0 = c and specular F0 at wo.h. The viewers of thin_film.h take R at the
-/// normal instead; the extension's thickness is that without a texture, its maximum.
+/// specular (F0 + (1 - F0) w) of the dielectric, in the layer too, are mixed by i with R of
+/// thin_film.h, for f0 = c and f0 = specular F0, at wo.h. The viewers of thin_film.h take R at the
+/// normal instead; the thickness is the extension's maximum, which it has without a texture.
 ///
 /// G is of correlated heights, as in the Khronos Sample Viewer (V_GGX), three.js
 /// (V_GGX_SmithCorrelated) and Babylon.js (smithVisibility_GGXCorrelated); appendix B prints the

@@ -27,7 +27,7 @@ constexpr Laws claims{.nonNegative = true,
                       .mirrorSymmetric = true,
                       .energyConserving = true};
 
-/// The same in all directions.
+/// f is the same in all directions.
 class Diffuse : public TermBrdf {
 public:
     using TermBrdf::TermBrdf;

@@ -58,7 +58,7 @@ public:
     const Channels& channels() const override { return channels_; }
     const Laws& laws() const override { return laws_; }
     void eval(const Direction& wo, DirectionBatch wi, double* out) const final;
-    /// The same with double and the C++ library's functions, as a reference for tests of `eval`.
+    /// f by double and the C++ library's functions, as a reference for tests of `eval`.
     void evalScalar(const Direction& wo, DirectionBatch wi, double* out) const;
     std::vector<Fact> facts() const override;
     Known samplers() const override { return known_; }

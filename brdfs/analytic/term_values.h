@@ -31,8 +31,8 @@ class Values {
 public:
     Values(const Parameters& parameters, std::size_t channel)
         : parameters_(parameters), channel_(channel) {}
-    /// The linear parameter `unit` is 1 and all others are 0. Derivatives are those by shapes
-    /// from `first` on.
+    /// The linear parameter `unit` is 1 and all others are 0. Derivatives are by the shapes from
+    /// `first` on.
     Values(const ColumnRequest& request, std::string_view unit, std::size_t first)
         : parameters_(request.values),
           channel_(request.channel),
@@ -54,7 +54,7 @@ public:
         return value;
     }
     std::size_t channel() const { return channel_; }
-    /// The same in another channel, of which a fit has no derivatives.
+    /// The value in another channel, of which a fit has no derivatives.
     N of(std::string_view name, std::size_t channel) const {
         const std::vector<double>& all = parameters_.numbers.find(name)->second;
         return channel == channel_ || all.size() == 1 ? (*this)(name) : N(all[channel]);

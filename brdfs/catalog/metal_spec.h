@@ -19,7 +19,7 @@ bool namesMetal(std::string_view values);
 
 /// "MODEL[:key=value,…]" at one wavelength: metal=NAME becomes fresnel=conductor, ior and k there.
 /// A specification without a metal is returned as it is. Throws UsageError for a model without ior
-/// and k, for those stated beside a metal, and beyond the metal's table.
+/// and k, for an ior or k stated beside a metal, and beyond the metal's table.
 std::string atWavelength(std::string_view spec, double nanometres);
 
 /// Opens "MODEL:…,metal=NAME[,nm=…]": the model at each of these wavelengths as a spectral BRDF;

@@ -77,8 +77,8 @@ public:
     const Channels& channels() const override { return tables_.channels; }
     const Laws& laws() const override { return laws_; }
     void eval(const Direction& wo, DirectionBatch wi, double* out) const override;
-    /// The same without vector instructions chosen at run time: the reference for RGB, and the path
-    /// of eval for spectra.
+    /// eval without vector instructions chosen at run time: the reference for RGB, and the path of
+    /// eval for spectra.
     void evalScalar(const Direction& wo, DirectionBatch wi, double* out) const;
 
     /// Incident directions between the file's first and last are covered; beyond them f is

@@ -81,7 +81,8 @@ bool hasBlocks(const BsdfDocument& document, BsdfSide side, std::string_view wav
 /// files use for a neutral surface: X = Y = Z gives R = G = B. Negative components, outside of the
 /// gamut, are kept.
 std::array<double, 3> rgbOfXyz(double x, double y, double z);
-/// The same of luminance and CIE 1976 (u', v'), taken as at most 1; neutral for v' below 1e-3.
+/// Linear RGB, as above, of luminance and CIE 1976 (u', v'), taken as at most 1; neutral for v'
+/// below 1e-3.
 std::array<double, 3> rgbOfYuv(double y, double u, double v);
 
 /// A file whose numbers have six or seven digits may exceed a reflectance of 1 by this much.

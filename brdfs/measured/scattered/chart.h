@@ -19,7 +19,7 @@ using Point = std::array<double, 4>;
 ///   anisotropic  (4 s_x, 4 s_y, d_x, d_y)
 ///   isotropic    the Hopf map of (s, d), which has no seam and is the same for a pair and the pair
 ///                turned about the normal: (|s|^2 - |d|^2, 4 s.d, 4 s x d) / sqrt(|s|^2 + |d|^2)
-/// Distances across a mirror lobe (s) count four times those along it (d), so that neighbours lie
+/// Distances across a mirror lobe (s) count four times as much as along it (d): neighbours then lie
 /// at the same position in the lobe for other incidences. Both are scaled to radians: turning
 /// one direction by a small angle near the mirror configuration moves the point by that angle.
 ///

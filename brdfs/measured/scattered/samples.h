@@ -68,7 +68,7 @@ private:
 /// for NaN, infinity, and angles more than 1e-3 above pi/2, which are most likely in degrees.
 /// Negative angles are on the other side of the normal.
 double checkedPolarAngle(double theta, const Row& row, std::string_view field);
-/// The same of an angle up to pi: beyond pi/2 it is on the back of the surface.
+/// Checks a polar angle up to pi likewise: beyond pi/2 it is on the back of the surface.
 double checkedSidedAngle(double theta, const Row& row, std::string_view field);
 /// Checks an azimuth in the same way, with a limit of two turns.
 double checkedAzimuth(double phi, const Row& row, std::string_view field);
