@@ -34,7 +34,7 @@ private:
 /// options and its input: a model with the binary exponents of its parameters, or the extension of
 /// a file with the binary exponent of its size.
 std::string classOf(const BatchItem& item, const BatchProgram& program);
-/// The same without the exponents.
+/// The class without the exponents.
 std::string widerClassOf(const BatchItem& item, const BatchProgram& program);
 /// A text, different for each item, by whose order items that take similar times are neighbours:
 /// the class, then the values of parameters.

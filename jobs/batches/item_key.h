@@ -26,8 +26,8 @@ private:
     std::unordered_map<std::string, InputStamp> stamps_;
 };
 
-/// The files that an item's inputs and its options' values name, and those that these name in turn
-/// (named_files.h), each once, sorted by name; none of those that the item writes.
+/// The files that an item's inputs and its options' values name, and the files that these name in
+/// turn (named_files.h), each once, sorted by name; without the files that the item writes.
 std::vector<std::string> filesOf(const BatchItem& item, const BatchProgram& program);
 
 /// SHA-256 of all that an item's result depends on: the version of the program, the words of the

@@ -31,7 +31,7 @@ ItemRecord madeItem(const std::string& text);
 
 /// Puts a record of a failure in the place of the item.
 void recordFailure(ItemOrder& order, int exitCode, const std::string& message);
-/// The same for an item whose process died; `signal` 0: not of a signal.
+/// Puts a record in the place of an item whose process died; `signal` 0: not by a signal.
 void recordDeath(ItemOrder& order, int signal);
 
 /// Whether an item failed because allocations did.

@@ -144,8 +144,8 @@ std::string thumbnailName(const ItemStatus& status, int pixels) {
     return sha256(facts).substr(0, digits) + ".png";
 }
 
-/// Spheres of the materials of finished items, in the folder `thumbnails`; those that are there
-/// stay. A material that cannot be shown has none.
+/// Draws spheres of the materials of finished items in the folder `thumbnails`; pictures that are
+/// there stay. A material that cannot be shown has none.
 std::map<std::string, std::string> drawThumbnails(const std::vector<ItemStatus>& items,
                                                   const fs::path& folder, int pixels,
                                                   const Listener& listener) {

@@ -93,7 +93,7 @@ private:
     }
 
 public:
-    // The same row with more said.
+    // The row with one more statement.
     template <class Number>
     constexpr OptionRow within(const Bounds<Number>& bounds) const {
         return having(&OptionRow::range, Bounds<double>{static_cast<double>(bounds.least),

@@ -15,7 +15,7 @@ std::vector<Word> wordsOf(const Rows& rows) {
     return words;
 }
 
-/// The same of tables whose rows call the help a summary.
+/// Names and helps of a table whose rows call the help a summary.
 template <class Rows>
 std::vector<Word> summariesOf(const Rows& rows) {
     std::vector<Word> words;

@@ -25,7 +25,7 @@ struct FigureOptions {
     std::string panels = "auto";  ///< brdfs::chosenCuts
 };
 
-/// The same as words; `figures` is their folder.
+/// FigureOptions as words of a command line; `figures` is the folder.
 struct FigureArguments {
     std::string figures = {}, figureWidth = "column", font = std::string(defaultFigureFont),
                 fontSize = "8", axis = "auto", panels = "auto";
@@ -62,7 +62,7 @@ FigureFiles addFitFigures(const Brdf& data, const brdfs::FitReport& report,
 /// The figures of a fit for its page, as wide as a page: of measured samples cuts and spectrum, and
 /// residuals, correlations and influence, with parameters.tex and samples.csv likewise.
 FigureFiles addPageFigures(const brdfs::FitReport& report, FileSet& files);
-/// The same before they are drawn.
+/// The figures of addPageFigures before they are drawn.
 std::vector<PrintFigure> pageFigures(const brdfs::FitReport& report, const FigureStyle& style);
 
 /// The figures of a comparison, likewise: its plots, and of measured samples as the reference cuts,

@@ -99,8 +99,8 @@ bool isPresetPath(const std::string& output);
 Fitted fit(const std::string& data, const std::string& output, const FitOptions& options,
            const Listener& listener = {});
 
-/// The same for a BRDF that is open, called `name` in messages and in the preset. Writes no files
-/// but residuals, bands and figures.
+/// Fits a model to a BRDF that is open, called `name` in messages and in the preset. Writes no
+/// files but residuals, bands and figures.
 Fitted fitBrdf(const Brdf& data, const std::string& name, const FitOptions& options,
                const Listener& listener = {});
 

@@ -47,8 +47,8 @@ struct LightingReference {
     LitPicture picture = {};
     double nanoseconds = 0;  ///< of one thread, for a point
 };
-/// renderByIntegration of `truth` under every light, or under those that half of the time is enough
-/// for. Throws UsageError, InputError, NumericError.
+/// renderByIntegration of `truth` under every light, or under as many of the first lights as half
+/// of the time is enough for. Throws UsageError, InputError, NumericError.
 std::vector<LightingReference> lightingReferences(const Brdf& truth,
                                                   const LightingErrorOptions& options,
                                                   const Listener& listener = {});

@@ -48,7 +48,7 @@ struct Rotated {
 /// InputError and OutputError.
 Rotated rotate(const std::string& input, const std::string& output, const RotateOptions& options);
 
-/// The same of coefficients at hand, in place; `name` is the light in messages.
+/// Rotates coefficients at hand in place; `name` is the light in messages.
 Rotated rotate(Coefficients& coefficients, const RotateOptions& options);
 Rotated rotate(LightCoefficients& light, const RotateOptions& options, const std::string& name);
 

@@ -31,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 namespace ml = material_library;
 
-/// Texels of level 0 that a library is learned from, and those that they are chosen among.
+/// Texels of level 0 that a library is learned from, and texels that they are chosen among.
 constexpr std::size_t mostLearned = 24, mostCandidates = 1024;
 /// Texels of level 0 whose BRDFs the texels of other levels are the mean of, while learning.
 constexpr std::size_t partsWhileLearning = 16;

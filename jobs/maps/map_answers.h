@@ -11,7 +11,7 @@ namespace hshfit::jobs {
 /// (docs/schemas/svbrdf.schema.json).
 nlohmann::ordered_json svbrdfJson(const Svbrdf& done);
 
-/// The same of maps of filtered lobes (docs/schemas/filtered_map.schema.json).
+/// The answer for maps of filtered lobes (docs/schemas/filtered_map.schema.json).
 nlohmann::ordered_json filteredMapJson(const FilteredMapAnswer& done);
 
 }  // namespace hshfit::jobs

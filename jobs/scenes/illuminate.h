@@ -44,7 +44,7 @@ struct IlluminateOptions {
     std::optional<double> seconds = {};
     bool force = false;  ///< replace existing files
     /// Keep the finished rows of each camera in FOLDER/.hshfit-CAMERA.partial until the files are
-    /// written, and take those that an earlier run kept there.
+    /// written, and take rows that an earlier run kept there.
     bool resume = false;
 
     bool caches() const { return method == IlluminateMethod::radianceCache; }

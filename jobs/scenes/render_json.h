@@ -13,7 +13,7 @@ namespace hshfit::jobs {
 /// errors (docs/schemas/render.schema.json).
 nlohmann::ordered_json renderJson(const Rendered& rendered, const RenderOptions& options,
                                   const std::string& output);
-/// The same of spheres under point lights.
+/// The answer of `render` for spheres under point lights.
 nlohmann::ordered_json renderJson(const SphereSheet& sheet, const SphereSheetOptions& options,
                                   const std::string& output);
 

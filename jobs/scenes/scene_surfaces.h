@@ -29,7 +29,7 @@ std::vector<SurfaceObject> objectsOf(const scene::Scene& read, std::size_t& dege
 /// samples of the light, which follow all of its radiance.
 std::string inputsKey(const scene::Scene& read, const SceneSurfaces& surfaces);
 
-/// The same for light on surfaces, which depends neither on cameras nor on names: the version,
+/// The key of light on surfaces, which depends neither on cameras nor on names: the version,
 /// materials by their values, meshes, emission and light.
 std::string lightKey(const scene::Scene& read, const SceneSurfaces& surfaces);
 

@@ -25,8 +25,8 @@ struct CompareOptions {
 };
 OptionRows<CompareOptions> compareOptions();
 
-/// The metrics asked for over the measured pairs of the reference alone, each counted once: those
-/// that take more than samples have no value.
+/// The metrics asked for over the measured pairs of the reference alone, each counted once. Metrics
+/// that need more than samples have no value.
 struct AtSamples {
     std::size_t count = 0;  ///< pairs
     std::vector<MetricValue> metrics = {};
@@ -59,7 +59,7 @@ struct ManyCompared {
     std::vector<std::string> names = {};                ///< nameOf the approximation
     std::vector<std::string> folders = {};              ///< of their pages; empty: none
     std::vector<std::optional<Compared>> results = {};  ///< none where one failed
-    std::vector<InputFailure> failures = {};            ///< those without a partner among them
+    std::vector<InputFailure> failures = {};            ///< also of inputs without a partner
     std::vector<std::string> kept = {};                 ///< folders whose page stands and is valid
 };
 
@@ -75,7 +75,7 @@ ManyCompared compareMany(const std::string& a, const std::vector<std::string>& o
 /// any other file is not. Throws OutputError.
 void writeComparisonTable(const ManyCompared& many, const std::string& path);
 
-/// The same of BRDFs that are open; `rgb` is not used.
+/// Compares BRDFs that are open; `rgb` is not used.
 Compared compareBrdfs(const Brdf& a, const Brdf& b, const std::string& output,
                       const CompareOptions& options, const Listener& listener = {});
 

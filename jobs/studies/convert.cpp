@@ -138,7 +138,7 @@ Converted converted(const Brdf& brdf, const brdfs::RepairedBrdf* repaired,
     return result;
 }
 
-/// The same of a specification, which is opened after the format is known to take it.
+/// Converts a specification, which is opened after the format is known to take it.
 Converted convertedFrom(const std::string& input, const std::string& output,
                         const brdfs::Writer& writer, const ConvertOptions& options,
                         const Listener& listener) {

@@ -58,15 +58,15 @@ struct Converted {
 Converted convert(const std::string& input, const std::string& output,
                   const ConvertOptions& options, const Listener& listener = {});
 
-/// The same of many inputs, each to FOLDER/NAME with the extension of the format, which has to be
+/// Converts many inputs, each to FOLDER/NAME with the extension of the format, which has to be
 /// given. Folders stand for their measured files. Files that exist are refused before any is
 /// written, unless `force` is set or, under a rule of the process (hshfit/files/output_rule.h),
 /// they have the bytes of the result. Each new file appears when it is complete.
 Many<Converted> convertMany(const std::vector<std::string>& specs, const std::string& folder,
                             const ConvertOptions& options, const Listener& listener = {});
 
-/// The same of a BRDF that is open. Throws UsageError if `options` have repairs or `rgb`, which are
-/// for BRDFs that this opens.
+/// Converts a BRDF that is open. Throws UsageError if `options` have repairs or `rgb`, which are
+/// for BRDFs that convert() opens.
 Converted convertBrdf(const Brdf& brdf, const std::string& output, const ConvertOptions& options,
                       const Listener& listener = {});
 

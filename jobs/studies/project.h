@@ -53,7 +53,7 @@ struct Projected {
 Projected project(const std::string& spec, const std::string& output, const ProjectOptions& options,
                   const Listener& listener = {});
 
-/// The same of a BRDF that is open, without a file; suggestions name `output` as the file.
+/// Projects a BRDF that is open, without a file; suggestions name `output` as the file.
 Projected projectBrdf(const Brdf& brdf, const ProjectOptions& options,
                       const Listener& listener = {}, const std::string& output = {});
 /// Writes the coefficients, in the form that they were projected to. Throws UsageError,
