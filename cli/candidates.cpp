@@ -9,7 +9,7 @@
 namespace hshfit::cli {
 namespace {
 
-/// Puts `prefix` before every word and leaves out those that `typed` does not begin.
+/// Puts `prefix` before every word and leaves out words that do not begin with `typed`.
 void keep(Candidates& candidates, const std::string& prefix, const std::string& typed) {
     for (Word& word : candidates.words) word.text = prefix + word.text;
     std::erase_if(candidates.words,

@@ -34,7 +34,7 @@ struct ExportArguments {
     std::vector<std::string> inputs;
     std::string output;
     jobs::ExportOptions options;
-    // Each with the options that it alone has; the others are those above.
+    // Each has the options of its own; options that it shares are in `options`.
     jobs::LightingExportOptions lighting{.models = {}};  ///< none
     jobs::MaterialExportOptions material;
     jobs::MapExportOptions map;

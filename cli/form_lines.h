@@ -10,7 +10,7 @@ namespace hshfit::cli {
 
 /// Kind, bytes and steps, for JSON answers.
 nlohmann::ordered_json describeForm(const Representation& representation);
-/// The same in one line.
+/// Kind, bytes and steps in one line.
 std::string formLine(const Representation& representation);
 
 }  // namespace hshfit::cli

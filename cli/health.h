@@ -14,7 +14,7 @@ namespace hshfit::cli {
 /// measured BRDF "census" and "axes".
 void describeHealth(const jobs::BrdfInfo& info, nlohmann::ordered_json& document);
 
-/// The same members as indented lines.
+/// The members of describeHealth as indented lines.
 std::string healthText(const nlohmann::ordered_json& document);
 
 /// A name in two columns: "  coverage      …".

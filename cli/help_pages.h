@@ -19,7 +19,7 @@ Page overviewPage();
 /// The options of a command and its example.
 Page commandPage(const CLI::App& command);
 
-// The same without the first paragraphs, which the manual has in sections of their own.
+// The pages without their first paragraphs, which the manual has in sections of their own.
 std::string programSummary();
 Page programSections(const CLI::App& program);
 Page commandSections(const CLI::App& command);

@@ -12,7 +12,7 @@ class Option;
 
 namespace hshfit::cli {
 
-/// The row of an argument or option of a command; null of those that every command has.
+/// The row of an argument or option of a command; null for options that every command has.
 const jobs::OptionRow* findRow(const CLI::App& command, const CLI::Option& option);
 
 /// The values of an argument or option; null where its type and its range state them.

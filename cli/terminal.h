@@ -10,8 +10,9 @@ namespace hshfit::cli {
 /// read.
 std::size_t columns();
 
-/// The same for tables, none where lines are to stay whole: standard output is no terminal and
-/// COLUMNS states nothing, so that other programs get a line for each row. No upper bound.
+/// The width of tables in columns, without an upper bound. None where lines are to stay whole:
+/// standard output is no terminal and COLUMNS states nothing, so that other programs get a line for
+/// each row.
 std::optional<std::size_t> tableColumns();
 
 enum class Stream { output, error };

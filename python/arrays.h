@@ -56,7 +56,7 @@ std::vector<double> numbersOf(const py::object& argument, const char* name);
 py::object fromJson(const nlohmann::ordered_json& document);
 /// A string, or a path-like object, as a string. Throws UsageError with `name`.
 std::string pathOf(const py::object& path, const char* name);
-/// The same of one, or of each of a sequence.
+/// The string of one path, or of each path of a sequence.
 std::vector<std::string> pathsOf(const py::object& paths, const char* name);
 /// An outgoing set as text: "32x32", 16, (52, 0) in degrees, an Outgoing, or None for "".
 std::string outgoingText(const py::object& outgoing);
@@ -64,7 +64,7 @@ std::string outgoingText(const py::object& outgoing);
 std::string listText(const py::object& names);
 /// Throws UsageError with `name` unless low <= value <= high.
 void requireWithin(const char* name, double value, double low, double high);
-/// The same of an option that the program has too.
+/// Throws UsageError with `name` unless `value` is within the bounds of an option.
 template <class Value, class Number>
 void requireWithin(const char* name, Value value, const jobs::Bounds<Number>& bounds) {
     requireWithin(name, static_cast<double>(value), static_cast<double>(bounds.least),

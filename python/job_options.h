@@ -39,7 +39,7 @@ public:
     py::object take(const char* name);
     /// Throws TypeError if there are arguments that nobody took.
     void finish() const;
-    /// The same of a dict called `name` whose keys are those options: throws UsageError.
+    /// Throws UsageError if keys are left of a dict called `name` whose keys are those options.
     void finish(std::string_view name, const Options& options) const;
 
 private:
@@ -51,7 +51,7 @@ private:
 /// which is returned. Throws as Keywords does.
 py::object optionsFrom(const py::kwargs& keywords, const Options& options);
 
-/// A function whose arguments behind those by place are options, and `progress`.
+/// A function with arguments by place, and behind them options and `progress`.
 struct OptionFunction {
     const char* name;
     std::string before;  ///< arguments by place, "brdf: BrdfLike"

@@ -43,7 +43,7 @@ private:
 void watched(const py::object& progress, std::span<Source* const> sources,
              const std::function<void(const jobs::Listener&)>& work);
 
-/// The same for work that is over within a moment, and is done by the caller's thread: no signals.
+/// Does work that is over within a moment on the caller's thread, without a look at signals.
 void unwatched(std::span<Source* const> sources, const std::function<void()>& work);
 
 }  // namespace hshfit::python
