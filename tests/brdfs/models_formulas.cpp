@@ -248,7 +248,7 @@ TEST(Formulas, MicrofacetIdentities) {
 
 using Real = boost::multiprecision::cpp_bin_float_50;
 
-/// The same input doubles in 50 digits, made unit there.
+/// A direction of doubles in 50 digits, made a unit vector there.
 struct Exact {
     Real x, y, z;
     explicit Exact(const Direction& d) : x(d.x), y(d.y), z(d.z) {

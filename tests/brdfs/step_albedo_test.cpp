@@ -23,7 +23,7 @@ std::unique_ptr<Brdf> klems(const char* name, const std::vector<KlemsRing>& ring
         "Columns", "", blockXml("Reflection Front", matrixText(patchesOf(rings), value), name)));
 }
 
-/// The same BRDF, half as bright, through a wrapper.
+/// The BRDF, half as bright, through a wrapper.
 std::unique_ptr<Brdf> asGreyHalf(std::unique_ptr<Brdf> brdf) {
     ChannelView::Look look{
         .name = "half", .channels = Channels::grey(), .laws = brdf->laws(), .weights = {{0.5}}};

@@ -42,7 +42,7 @@ TEST_F(Cli, GaussiansAreABrdf) {
     ASSERT_EQ(answer.code, 0) << answer.err;
     const Json json = Json::parse(answer.out);
     EXPECT_TRUE(keepsSchema(read(path("g.json")), "gaussians"));
-    // The same error from the file, by the command that compares BRDFs.
+    // The command that compares BRDFs finds the same error from the file.
     const Answer compared = run("compare ggx:alpha=.3 " + path("g.json") +
                                 " --outgoing 3 --metrics relative-l2-cosine --json");
     ASSERT_EQ(compared.code, 0) << compared.err;

@@ -43,7 +43,7 @@ inline Real jacobiSum(int n, int a, int b, const Real& w) {
     return sum;
 }
 
-/// The same from the nearer end, by P_n^{(a,b)}(-x) = (-1)^n P_n^{(b,a)}(x).
+/// The polynomial from the nearer end, by P_n^{(a,b)}(-x) = (-1)^n P_n^{(b,a)}(x).
 inline Real jacobi(int n, int a, int b, const Real& w, const Real& oneMinusW) {
     if (w <= oneMinusW) return jacobiSum(n, a, b, w);
     const Real value = jacobiSum(n, b, a, oneMinusW);

@@ -178,7 +178,7 @@ inline std::vector<std::array<Rgb, walls>> radianceByBounce(int n, int bounces) 
     return result;
 }
 
-/// The same box for rays: its patches at n = 4, so that the lamp is part of the ceiling.
+/// The box for rays: its patches at n = 4, so that the lamp is part of the ceiling.
 inline SurfaceScene boxScene() {
     std::vector<SurfaceMaterial> materials;
     std::vector<SurfaceObject> objects;

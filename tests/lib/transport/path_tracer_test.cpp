@@ -180,7 +180,7 @@ TEST(EnvironmentSampler, FindsTheIntegralOfRadiance) {
         }
         const double mean = sum / count;
         const double error = std::sqrt(std::max(0.0, squares / count - mean * mean) / count);
-        // The same integral of radiance over the hemisphere about the pole, by quadrature.
+        // The integral of radiance over the hemisphere about the pole, by quadrature.
         const double theta = polarAngle(pole), phi = azimuth(pole);
         const LightSamples nodes =
             sampleLights(parseLights(example).lights, Frame({.theta = theta, .phi = phi}), 5);
