@@ -35,8 +35,8 @@ public:
         const double length = std::sqrt(dot(sum, sum));
         half_ = {sum.x / length, sum.y / length, sum.z / length};
         const double across = std::hypot(half_.x, half_.y);
-        // Where the half vector is the normal, the plane's axes follow wi, so that the pair may
-        // turn about the normal.
+        // Where the half vector is the normal, the axes follow wi: if the pair is turned about the
+        // normal, the axes turn with it.
         const bool tilted = across > 1e-9;
         const Direction& axis = tilted ? half_ : wi;
         const double flatAxis = std::hypot(axis.x, axis.y);
