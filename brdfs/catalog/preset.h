@@ -40,7 +40,7 @@ struct PresetContent {
 /// Throws InputError: not JSON, another format or version, a field absent or of the wrong type.
 PresetContent parsePreset(std::string_view text, const std::string& where);
 
-/// Opens the BRDF of a preset. Fields other than PresetContent's are ignored, so that the result of
+/// Opens the BRDF of a preset. Fields that Preset does not name are ignored, so that the result of
 /// a fit is a preset too. Throws InputError as above, or for an invalid parameter.
 std::unique_ptr<Brdf> openPreset(std::string_view text, const std::string& where);
 

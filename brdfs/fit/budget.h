@@ -19,7 +19,7 @@ struct BudgetRow {
     double degrees = std::numeric_limits<double>::infinity();
 };
 
-/// The budget of one parameter; those without a standard error have none.
+/// The budget of one parameter. Parameters without a standard error have none.
 struct ParameterBudget {
     std::string name, channel;
     double value = 0;

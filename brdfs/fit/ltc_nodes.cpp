@@ -44,8 +44,8 @@ LtcRule settledRule(const Brdf& brdf, const Direction& wo, const Ltc& around, Lt
 
 namespace {
 
-/// Longitudes, from z towards x, between which the cosine and cos(theta_i) do not change sign, but
-/// for those where both are negative.
+/// Longitudes, from z towards x, between which the cosine and cos(theta_i) do not change sign.
+/// Longitudes where both are negative are left out.
 std::array<double, 4> sectors(const Ltc& around) {
     const double up = std::atan2(-around.c, around.a);  // longitude of the surface's normal
     std::array<double, 4> ends{-pi / 2, pi / 2, up - pi / 2, up + pi / 2};

@@ -67,7 +67,7 @@ std::string untold(const Type&) {
     return {};
 }
 
-/// A Member for a member that `parse` reads and `name` writes as a word.
+/// As `at`, for a member that `parse` reads and `name` writes as a word.
 template <auto parse, auto name, auto First, auto... Rest>
 constexpr Member spelled = {
     &typeid(decltype(ownerOf(First))), [](void* options) -> OptionValue {

@@ -93,7 +93,7 @@ struct Exported {
     std::optional<gpu::ProposalRecord> proposal;  ///< for sampling, where asked for
     double proposalSeconds = 0;                   ///< that its fit and efficiency took
     std::optional<Poor> poor;
-    std::string sidecar, test;  ///< names of files in the folder, as those below
+    std::string sidecar, test;  ///< names of files in the folder, as below
     std::vector<gpu::ExportedFile> textures;
     std::vector<ExportedText> texts;
     std::vector<gpu::ViewerLight> lights;  ///< of the viewer

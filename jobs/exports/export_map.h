@@ -31,7 +31,7 @@ struct ExportedMapText {
 struct ExportedMap {
     std::string name;
     ExportableMap::Facts map;
-    std::string sidecar, test;  ///< names of files in the folder, as those below
+    std::string sidecar, test;  ///< names of files in the folder, as below
     std::vector<MapTextureFile> textures;
     std::vector<ExportedMapText> texts;
     std::vector<gpu::ViewerLight> lights;  ///< of the viewer

@@ -34,7 +34,7 @@ enum class Cosines { scatter, incidence, both };
 ///     a_s ((1 - v) F + v V) + o + d / c
 ///     F  f averaged over both apertures, weighted by cos(theta_i) cos(theta_o), and over the slit,
 ///        at the stated directions turned by the zeros of the angles, times the cosines c there
-///        over those at the stated ones
+///        over the cosines c at the stated directions
 ///     V  directional albedo of wi over pi: the mean radiance of the hemisphere
 ///     v  stray light, the share that reaches the detector from all of the hemisphere
 ///     o  offset, 1/sr

@@ -331,8 +331,8 @@ TEST(LitPicture, ManyPointsUnderAPictureHaveTheirOwnRadiance) {
     EXPECT_LT(largest, 10 * tolerance);
 }
 
-/// Every 17th pixel of a picture against a finer integral of its own. `error` is the largest,
-/// relative to the radiance or to a twentieth of the mean radiance if that is more. `work` is the
+/// Every 17th pixel of a picture against a finer integral of its own. `error` is the largest error
+/// relative to the radiance, or to a twentieth of the mean radiance if that is more. `work` is the
 /// number of evaluations for the picture over the number that an integral at each point takes.
 struct OwnIntegrals {
     double error = 0, work = 0;
