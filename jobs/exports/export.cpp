@@ -166,8 +166,9 @@ std::string sourceOf(gpu::Language language, const Exported& exported,
 /// Fits a proposal to what the shaders evaluate to, if it is asked for.
 void addProposal(const Targets& chosen, const ExportOptions& options, const Brdf& brdf,
                  Exported& exported) {
-    const bool shaders = std::ranges::any_of(
-        chosen, [](const Target* target) { return target->kind == Target::Kind::shader; });
+    const bool shaders = std::ranges::any_of(chosen, [](const Target* target) {
+        return target->kind == Target::Kind::shader || target->kind == Target::Kind::binary;
+    });
     if (!options.sampling.value_or(shaders)) return;
     const auto start = Clock::now();
     exported.proposal = proposalFor(brdf);
@@ -215,20 +216,28 @@ void writeShaders(const Targets& chosen, const ExportOptions& options, const Lis
     }
 }
 
-/// The shader as SPIR-V, by the compiler that is linked.
+/// The functions of the shader as SPIR-V, by the compiler that is linked, each with a file that
+/// says how it is bound.
 void writeSpirv(const Targets& chosen, const ExportOptions& options, const Listener& listener,
                 FileSet& files, Exported& exported) {
     const auto target = std::ranges::find(chosen, Target::Kind::binary, &Target::kind);
     if (target == chosen.end()) return;
     const std::string& prefix = options.shader.prefix;
     try {
-        const auto words =
+        const auto modules =
             exported.form
-                ? gpu::spirvModule(*exported.form, {.prefix = prefix, .storage = exported.storage})
-                : gpu::spirvModule(exported.payload, prefix);
-        const std::string file = fmt::format("{}_{}.spv", exported.name, prefix);
-        files.write(file, gpu::spirvBytes(words));
-        exported.texts.push_back({"binary", (*target)->name, file});
+                ? gpu::spirvModules(*exported.form, {.prefix = prefix, .storage = exported.storage},
+                                    exported.proposal)
+                : gpu::spirvModules(exported.payload, prefix, exported.proposal);
+        for (const gpu::SpirvModule& module : modules) {
+            const std::string file =
+                fmt::format("{}_{}{}.spv", exported.name, prefix,
+                            module.function == "eval" ? "" : "_" + module.function);
+            files.write(file, gpu::spirvBytes(module.words));
+            files.write(file + ".json", gpu::moduleText(module, file));
+            exported.texts.push_back({"binary", (*target)->name, file});
+            exported.texts.push_back({"bindings", (*target)->name, file + ".json"});
+        }
     } catch (const UsageError& error) {
         if (options.targets != "all") throw;
         listener.say(fmt::format("left out: {}", error.what()));

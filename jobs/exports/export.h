@@ -48,7 +48,7 @@ struct ExportOptions {
     gpu::ShaderOptions shader = {};
     bool measureError = true;
     /// A proposal for sampling in the sidecar and functions for it in the shaders; none: if there
-    /// are shaders among the targets.
+    /// are shaders among the targets, as text or compiled.
     std::optional<bool> sampling = {};
     bool zstd = false;   ///< compress KTX2
     bool force = false;  ///< replace existing files
@@ -79,7 +79,7 @@ struct ExportError {
 /// The object "fit_error" of sidecars and answers.
 nlohmann::ordered_json errorJson(const ExportError& error);
 
-/// A shader, a viewer or a file of a module.
+/// A shader, as text or compiled, the bindings of a compiled one, a viewer or a file of a module.
 struct ExportedText {
     std::string role, target, path;
 };

@@ -9,6 +9,7 @@
 #include <hshfit/files/checksum.h>
 #include <hshfit/files/file_set.h>
 #include <hshfit/files/json_fields.h>
+#include <hshfit/gpu/binaries/spirv_module.h>
 #include <hshfit/gpu/containers/ktx2_image.h>
 #include <hshfit/gpu/containers/targets.h>
 #include <hshfit/gpu/shader.h>
@@ -145,23 +146,50 @@ void describeLighting(const LightingModel& model, const LightingEnvironment& lig
     }
 }
 
+/// The shader as SPIR-V, with a file that says how it is bound.
+Json writeLightingModule(const LightingModel& model, const lighting::LightingShader& shader,
+                         const std::string& stem, Output& output) {
+    const bool cube = model.kind == Kind::splitSum || model.kind == Kind::prefiltered;
+    const auto slots = static_cast<std::size_t>(shader.order);
+    const gpu::SpirvModule module = gpu::spirvLightingModule(
+        {.prefix = shader.prefix,
+         .function = lighting::lightingFunction(shader),
+         .snippet = lighting::lightingShaderSource(gpu::Language::glsl, shader),
+         .tangent = shader.azimuths.count > 1,
+         .cube = cube,
+         .areas = model.kind == Kind::cosines,
+         .lights = model.kind == Kind::coefficients ? slots * slots
+                   : model.kind == Kind::splitSum   ? 9
+                                                    : 0});
+    const std::string suffix = fmt::format("_{}.spv", stem);
+    const Json file = output.add(suffix, gpu::spirvBytes(module.words));
+    const Json bindings =
+        output.add(suffix + ".json", gpu::moduleText(module, file["path"].get<std::string>()));
+    return {{"target", "spirv"}, {"path", file["path"]}, {"bindings", bindings["path"]}};
+}
+
+lighting::LightingShader shaderFor(const LightingModel& model, const LightingTables& tables,
+                                   const std::string& source, const std::string& prefix) {
+    const lighting::ElevationTable& table = tables.table(model.kind);
+    return {.kind = static_cast<lighting::LightingShader::Kind>(model.kind),
+            .order = tables.harmonics ? tables.harmonics->order : 0,
+            .levels = tables.splitSum ? tables.splitSum->levels : 0,
+            .taps = tables.splitSum ? tables.splitSum->taps : 0,
+            .engine = tables.prefiltered ? tables.prefiltered->engine : nullptr,
+            .lobes = tables.prefiltered ? tables.prefiltered->lobes : 0,
+            .inPlane = tables.inPlane,
+            .rows = table.rows,
+            .azimuths = table.azimuths,
+            .texels = table.texels,
+            .prefix = prefix,
+            .source = source,
+            .generator = std::string("hshfit ") + version};
+}
+
 Json writeLightingShaders(const LightingModel& model, const LightingTables& tables,
                           const std::string& source, const Listener& listener, Output& output) {
-    const lighting::ElevationTable& table = tables.table(model.kind);
-    const lighting::LightingShader shader{
-        .kind = static_cast<lighting::LightingShader::Kind>(model.kind),
-        .order = tables.harmonics ? tables.harmonics->order : 0,
-        .levels = tables.splitSum ? tables.splitSum->levels : 0,
-        .taps = tables.splitSum ? tables.splitSum->taps : 0,
-        .engine = tables.prefiltered ? tables.prefiltered->engine : nullptr,
-        .lobes = tables.prefiltered ? tables.prefiltered->lobes : 0,
-        .inPlane = tables.inPlane,
-        .rows = table.rows,
-        .azimuths = table.azimuths,
-        .texels = table.texels,
-        .prefix = output.options.prefix,
-        .source = source,
-        .generator = std::string("hshfit ") + version};
+    const lighting::LightingShader shader = shaderFor(model, tables, source, output.options.prefix);
+    const std::string stem = fmt::format("{}_{}", output.options.prefix, model.name);
     const auto chosen = gpu::selectTargets(output.options.targets);
     Json shaders = Json::array();
     for (const gpu::LanguageEntry& language : gpu::languages()) {
@@ -173,13 +201,19 @@ Json writeLightingShaders(const LightingModel& model, const LightingTables& tabl
             listener.say(fmt::format("left out: lighting has no shaders in {}", language.name));
             continue;
         }
-        const std::string stem = fmt::format("{}_{}", output.options.prefix, model.name);
         const Json file =
             output.add(gpu::shaderFileName("", language, stem),
                        gpu::fileText(language.language,
                                      lighting::lightingShaderSource(language.language, shader),
                                      output.name + "_" + stem));
         shaders.push_back({{"target", language.name}, {"path", file["path"]}});
+    }
+    if (!std::ranges::count(chosen, gpu::Target::Kind::binary, &gpu::Target::kind)) return shaders;
+    try {
+        shaders.push_back(writeLightingModule(model, shader, stem, output));
+    } catch (const UsageError& error) {
+        if (output.options.targets != "all") throw;
+        listener.say(fmt::format("left out: {}", error.what()));
     }
     return shaders;
 }

@@ -207,22 +207,41 @@ TEST_F(ExportForm, HalfwayIsExportedAsItIsAndImportedByteByByte) {
     EXPECT_EQ(value("out/form.coef.ktx2"), value("form.json"));
 }
 
-/// A module of its own: a word, 07230203, the version 1.3, and nothing beside sidecar and triples.
+/// Modules with nothing beside them but sidecar, triples and what says how each is bound. They
+/// begin with a word, 07230203, and the version 1.3.
 TEST_F(ExportForm, SpirvStandsAlone) {
-    const Answer answer = run("export " + path("form.json") + " -o " + path("out") +
-                              " --target spirv --prefix paint --json");
+    const std::string command = "export " + path("form.json") + " --target spirv --prefix paint" +
+                                " --json -o " + path("out");
+    const Answer answer = run(command);
     if (answer.err.find("needs glslang") != std::string::npos) GTEST_SKIP() << answer.err;
     ASSERT_EQ(answer.code, 0) << answer.err;
     EXPECT_TRUE(keepsSchema(answer.out, "export"));
     const Json document = Json::parse(answer.out);
-    EXPECT_FALSE(document.contains("proposal"));
-    const Json file = document["files"].back();
-    EXPECT_EQ(file["role"], "binary");
-    EXPECT_EQ(file["target"], "spirv");
-    EXPECT_EQ(file["path"], "form_paint.spv");
-    const std::string bytes = read(path("out/form_paint.spv"));
-    EXPECT_EQ(bytes.size() % 4, 0u);
-    EXPECT_EQ(bytes.substr(0, 8), std::string("\x03\x02\x23\x07\0\3\1\0", 8));
+    EXPECT_TRUE(document.contains("proposal"));
+    std::vector<std::string> functions;
+    ASSERT_EQ(document["files"].size(), 2u + 2 * 3);
+    for (std::size_t k = 2; k < 8; k += 2) {
+        const Json module = document["files"][k], bindings = document["files"][k + 1];
+        EXPECT_EQ(module["role"], "binary");
+        EXPECT_EQ(bindings["role"], "bindings");
+        EXPECT_EQ(module["target"], "spirv");
+        const std::string file = module["path"], text = read(path("out/" + file + ".json"));
+        EXPECT_EQ(bindings["path"], file + ".json");
+        EXPECT_TRUE(keepsSchema(text, "spirv"));
+        const Json stated = Json::parse(text);
+        functions.push_back(stated["function"]);
+        EXPECT_EQ(stated["module"]["path"], file);
+        const std::string bytes = read(path("out/" + file));
+        EXPECT_EQ(bytes.size(), stated["module"]["bytes"]);
+        EXPECT_EQ(bytes.size() % 4, 0u);
+        EXPECT_EQ(bytes.substr(0, 8), std::string("\x03\x02\x23\x07\0\3\1\0", 8));
+    }
+    EXPECT_EQ(functions, (std::vector<std::string>{"eval", "sample", "pdf"}));
+    EXPECT_EQ(document["files"][2]["path"], "form_paint.spv");
+
+    const Answer alone = run(command + " --no-sampling --force");
+    ASSERT_EQ(alone.code, 0) << alone.err;
+    EXPECT_EQ(Json::parse(alone.out)["files"].size(), 4u);
 }
 
 /// Factored, sparse and with a Lambert term split off: as they are, and the same again.

@@ -6,6 +6,9 @@
 
 #include <cstdint>
 #include <cstring>
+#include <map>
+#include <set>
+#include <string>
 
 namespace hshfit::test {
 namespace {
@@ -70,6 +73,34 @@ TEST_F(Lighting, TablesLightAndShadersOfAFormAreWrittenWithTheirErrors) {
         EXPECT_EQ(word(cube, 80 + 24 * k) % 8, 0u);
     }
     EXPECT_EQ(word(cube, 80) + word(cube, 88), cube.size());
+}
+
+/// Each model as a module, of which a file says how it is bound; its light is at binding 4.
+TEST_F(Lighting, ModulesOfSpirvStateTheirBindings) {
+    project("lambert:kd=.5", "grey.json", "--order 2 --outgoing 8");
+    const Answer answer = run("export " + path("grey.json") + " -o " + path("out") +
+                              " --lighting all --no-error --target spirv --json");
+    if (answer.err.find("needs glslang") != std::string::npos) GTEST_SKIP() << answer.err;
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "lighting"));
+    const std::map<std::string, std::set<int>> bound{{"coefficients", {0, 2, 3, 4}},
+                                                     {"split-sum", {0, 1, 2, 3, 4}},
+                                                     {"ltc", {0, 2, 3, 4}},
+                                                     {"prefiltered", {0, 1, 2, 3}}};
+    const Json document = Json::parse(answer.out);
+    ASSERT_EQ(document["models"].size(), bound.size());
+    for (const Json& model : document["models"]) {
+        ASSERT_EQ(model["shaders"].size(), 1u);
+        const Json shader = model["shaders"][0];
+        const std::string text = read(path("out/" + shader["bindings"].get<std::string>()));
+        EXPECT_TRUE(keepsSchema(text, "spirv"));
+        const Json stated = Json::parse(text);
+        EXPECT_EQ(stated["module"]["path"], shader["path"]);
+        std::set<int> bindings;
+        for (const Json& binding : stated["bindings"])
+            bindings.insert(binding["binding"].get<int>());
+        EXPECT_EQ(bindings, bound.at(model["model"])) << model["model"];
+    }
 }
 
 TEST_F(Lighting, ErrorsAreMeasuredUnderTheLightsThatTheTimeIsEnoughFor) {

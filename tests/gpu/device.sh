@@ -27,7 +27,8 @@ pack() {
     mkdir -p "$HSHFIT_KEEP_SHADERS" "$folder/device/lib" "$folder/device/spare"
     for test in shaders/shader_proof shaders/shader_world shaders/irradiance_shader \
         forms/form_shader forms/library_shader lighting/lighting_shader maps/map_shader \
-        maps/library_map_shader filtered_maps/filtered_shader proposals/proposal_shader; do
+        maps/library_map_shader filtered_maps/filtered_shader proposals/proposal_shader \
+        binaries/spirv_module; do
         "$build/tests/gpu/${test}_test" --gtest_filter="$filter-*Slang*" >"$folder/log" ||
             { cat "$folder/log"; fail "$test: a test fails"; }
         grep -A 1 ': Skipped' "$folder/log" | grep -v ': Skipped' | sort -u || true

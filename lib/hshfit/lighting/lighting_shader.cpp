@@ -154,6 +154,10 @@ void setLobes(const LightingShader& shader, data& page) {
 
 }  // namespace
 
+std::string lightingFunction(const LightingShader& shader) {
+    return functionOf(shader).name;
+}
+
 std::span<const Language> lightingLanguages() {
     return languages;
 }

@@ -34,7 +34,10 @@ struct LightingShader {
     std::string source, generator;  ///< for comments
 };
 
-/// The languages that have such shaders: GLSL ES, GLSL, HLSL and WGSL.
+/// The name of the function without its prefix: coefficients, splitSum, ltc or prefiltered.
+std::string lightingFunction(const LightingShader& shader);
+
+/// The languages that have such shaders: GLSL ES, GLSL, HLSL, Slang and WGSL.
 std::span<const gpu::Language> lightingLanguages();
 
 /// The snippet. Throws UsageError for a language without one and for a prefix that no shading

@@ -31,10 +31,11 @@ done
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 answer 0 "$script" pack "$1" "$folder/shaders.tar.gz" \
-    'HalfwayShader.Glsl*On*:LightingShader.GlslOn*:LightingShader.GlslEs*'
+    'HalfwayShader.Glsl*On*:LightingShader.Glsl*:LightingShader.SpirvModules*'
 answer 0 "$script" check "$folder/shaders.tar.gz"
 says '^| halfway | [1-9][0-9]* of [1-9]'
 says '^| lighting | 4 of 4, .*| 4 of 4, .*| 4 of 4, '
+says '^| lighting, modules | 4 of 4, '
 says '^| network, 675 weights | [0-9.e+]* | [0-9.]* | 1.00 |$'
 cat "$folder/log"
 

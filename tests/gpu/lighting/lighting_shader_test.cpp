@@ -1,17 +1,22 @@
 // Shaders of lighting on the renderers in software, at the tests that their export writes, which
 // the library computes in double precision.
 
+#include "../binaries/bound_module.h"
 #include "../shaders/runners.h"
 #include "temporary_folder.h"
 
 #include <jobs/lighting/lighting.h>
+
+#include <hshfit/gpu/vulkan/spirv.h>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <kainjow/mustache.hpp>
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -46,9 +51,11 @@ struct Exported {
     Json sidecar;
 
     explicit Exported(const Material& material) {
-        jobs::exportLighting(
-            material.spec, folder.path().string(),
-            {.targets = "glsl-es,glsl,hlsl,wgsl", .name = "lit", .measureError = false});
+        jobs::exportLighting(material.spec, folder.path().string(),
+                             {.targets = gpu::compilesGlsl() ? "glsl-es,glsl,hlsl,wgsl,spirv"
+                                                             : "glsl-es,glsl,hlsl,wgsl",
+                              .name = "lit",
+                              .measureError = false});
         sidecar = Json::parse(fileText(folder / "lit.lighting.json"));
     }
     bool turned() const { return sidecar["rows"].contains("azimuths"); }
@@ -59,9 +66,11 @@ struct Exported {
         }
         throw std::runtime_error("no raw texels in the sidecar");
     }
-    std::string shader(const Json& model, const std::string& target) const {
+    /// The shader in a language or, with the key "bindings", what states those of a module.
+    std::string shader(const Json& model, const std::string& target,
+                       const char* key = "path") const {
         for (const Json& one : model["shaders"])
-            if (one["target"] == target) return fileText(folder / one["path"].get<std::string>());
+            if (one["target"] == target) return fileText(folder / one[key].get<std::string>());
         throw std::runtime_error("no shader in " + target);
     }
 };
@@ -214,6 +223,54 @@ BoundShader shaderOf(Language language, Api api, const Exported& files, const Js
     return shader;
 }
 
+/// The surfaces' place in the world, from which they see the corners.
+constexpr std::array<float, 3> surfacePlace{2.5F, -1.25F, 0.5F};
+
+/// Normals, tangents and viewers by turns, and the place where the module reads one: a vector of
+/// four each.
+std::vector<float> surfaceItems(const Json& stated, const Places& places) {
+    std::vector<float> numbers;
+    for (std::size_t k = 0; k < places.normals.size(); k += 3) {
+        for (const Json& field : stated["fields"]) {
+            const std::string name = field["name"];
+            for (std::size_t i = 0; i < 3; ++i)
+                numbers.push_back(name == "normal"    ? places.normals[k + i]
+                                  : name == "tangent" ? places.tangents[k + i]
+                                  : name == "viewer"  ? places.viewers[k + i]
+                                                      : surfacePlace.at(i));
+            numbers.push_back(-7);
+        }
+    }
+    return numbers;
+}
+
+/// The module that was written, bound as the file beside it states.
+BoundShader moduleOf(const Exported& files, const Json& model) {
+    const std::string bytes = files.shader(model, "spirv");
+    const std::string text = files.shader(model, "spirv", "bindings");
+    std::vector<std::uint32_t> words(bytes.size() / 4);
+    std::memcpy(words.data(), bytes.data(), bytes.size());
+    validateSpirv(words);
+    EXPECT_EQ(listedBindings(disassembled(words)), statedBindings(text));
+    std::vector<ComputeResource> bound = texturesOf(files, model, true);
+    std::vector<float> items;
+    const Json document = Json::parse(text);
+    for (const Json& stated : document["bindings"]) {
+        if (stated["binding"] == 2) items = surfaceItems(stated, Places(files.sidecar["tests"]));
+        if (stated["binding"] != 4) continue;
+        const std::vector<float> given = lightOf(model);
+        std::vector<float> light;
+        for (std::size_t i = 0; i < given.size(); ++i) {
+            const Json& field = stated["fields"][i / 3 % stated["fields"].size()];
+            const bool corner = field["name"].get<std::string>().starts_with("corner");
+            light.push_back(given[i] + (corner ? surfacePlace.at(i % 3) : 0));
+            if (i % 3 == 2) light.push_back(-7);
+        }
+        bound.push_back({.binding = 4, .numbers = std::move(light)});
+    }
+    return boundModule(words, std::move(items), files.sidecar["tests"].size(), 3, std::move(bound));
+}
+
 /// Relative to the largest radiance.
 Wanted wantedOf(const Exported& files, const std::string& model) {
     Wanted wanted;
@@ -285,6 +342,31 @@ void prove(const Material& material, Language language, Api api) {
     }
 }
 
+void proveModules(const Material& material) {
+    if (!gpu::compilesGlsl()) GTEST_SKIP() << "built without Vulkan (libvulkan-dev)";
+    const Exported& files = exported(material);
+    for (const Json& model : files.sidecar["models"]) {
+        const std::string name = model["model"];
+        const Wanted wanted = wantedOf(files, name);
+        const Bounds bounds = boundsOf(model);
+        try {
+            const double difference = largestDifference(wanted, runHere(moduleOf(files, model)));
+            std::cout << fmt::format("{:<14} {:.1e}\n", name, difference);
+            EXPECT_LE(difference, bounds.here()) << name;
+            keepLast(std::string(material.name) + ", modules", Language::glsl, name, wanted,
+                     bounds);
+        } catch (const Missing& reason) {
+            GTEST_SKIP() << reason.what();
+        }
+    }
+}
+
+TEST(LightingShader, SpirvModulesOnVulkan) {
+    proveModules(isotropic);
+}
+TEST(BrushedLightingShader, SpirvModulesOnVulkan) {
+    proveModules(brushed);
+}
 TEST(LightingShader, GlslOnVulkan) {
     prove(isotropic, Language::glsl, Api::vulkan);
 }

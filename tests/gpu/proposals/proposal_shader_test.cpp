@@ -1,9 +1,11 @@
 // sample and pdf of the snippets, in every language and for every form, against the library.
 
+#include "../binaries/bound_module.h"
 #include "../shaders/runners.h"
 #include "sample_cases.h"
 
 #include <hshfit/error.h>
+#include <hshfit/gpu/vulkan/spirv.h>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -18,6 +20,7 @@
 namespace hshfit::shaders {
 namespace {
 
+using gpu::ComputeResource;
 using gpu::Language;
 
 constexpr std::size_t perJob = Pairs::side * Pairs::side;
@@ -30,6 +33,17 @@ const std::vector<SampleCase>& cases() {
 const std::vector<SampleCase>& libraryCases() {
     static const std::vector<SampleCase> all = librarySampleCases();
     return all;
+}
+
+/// Some outputs of each invocation.
+Wanted columnsOf(const Wanted& wanted, std::size_t outputs, const std::vector<std::size_t>& kept) {
+    Wanted part;
+    for (std::size_t k = 0; k < wanted.values.size(); k += outputs)
+        for (const std::size_t i : kept) {
+            part.values.push_back(wanted.values[k + i]);
+            part.scales.push_back(wanted.scales[k + i]);
+        }
+    return part;
 }
 
 /// Runners of compute shaders take all jobs at once.
@@ -177,12 +191,48 @@ void checkElevation(const SampleCase& one, const ShaderJob& job, const std::vect
     }
 }
 
-void prove(Language language, Run runner = {}, const std::vector<SampleCase>& proved = cases()) {
+constexpr Bounds samplingBounds{1e-5, 5e-5};
+
+/// The outputs of a case's program, by the modules of `sample` and `pdf`.
+std::vector<float> runModules(const SampleCase& one, const ShaderJob& all) {
+    const std::vector<gpu::SpirvModule> modules =
+        one.form ? gpu::spirvModules(*one.form, {.storage = gpu::Storage::constants}, one.record)
+                 : gpu::spirvModules(one.payload, "hsh", one.record);
+    const std::size_t count = all.pairs.wo.size(), outputs = all.outputs();
+    const std::vector<float> items = itemNumbers({all.pairs.wo, all.pairs.wi});
+    std::vector<float> together(count * outputs);
+    for (const gpu::SpirvModule& module : modules) {
+        validateSpirv(module.words);
+        EXPECT_EQ(listedBindings(disassembled(module.words)),
+                  statedBindings(gpu::moduleText(module, "a.spv")));
+        if (module.function == "eval") continue;
+        std::vector<std::size_t> columns{4};
+        if (module.function == "sample") {
+            columns = {0, 1, 2, 3};
+            for (std::size_t c = 5; c < outputs; ++c) columns.push_back(c);
+        }
+        const bool reads = module.function == "sample" && !one.form;
+        const std::vector<float> found =
+            runHere(boundModule(module.words, items, count, columns.size(),
+                                reads ? boundTo(one.payload) : std::vector<ComputeResource>{}));
+        for (std::size_t k = 0; k < count; ++k)
+            for (std::size_t i = 0; i < columns.size(); ++i)
+                together[k * outputs + columns[i]] = found[k * columns.size() + i];
+        keepLast("modules, sampling", Language::glsl, one.name + ", " + module.function,
+                 columnsOf(wantedOf(one, sampleJobs(one)), outputs, columns), samplingBounds);
+    }
+    return together;
+}
+
+void prove(Language language, Run runner = {}, const std::vector<SampleCase>& proved = cases(),
+           bool modules = false) {
     const bool together = language != Language::glslEs;
     if (!runner) runner = runnerOf(language);
     for (const SampleCase& one : proved) {
         SCOPED_TRACE(one.name);
         const std::vector<ShaderJob> jobs = sampleJobs(one);
+        if (modules)
+            runner = [&](const ShaderJob& job, const std::string&) { return runModules(one, job); };
         std::vector<std::vector<float>> found;
         try {
             found = runAll(jobs, sampleProgram(language, jobs[0], sampleSnippet(language, one)),
@@ -192,8 +242,8 @@ void prove(Language language, Run runner = {}, const std::vector<SampleCase>& pr
         } catch (const Refused& reason) {
             FAIL() << one.name << ": " << reason.what();
         }
-        const Bounds bounds{1e-5, 5e-5};
-        if (together) keepLast("sampling", language, one.name, wantedOf(one, jobs), bounds);
+        if (together && !modules)
+            keepLast("sampling", language, one.name, wantedOf(one, jobs), samplingBounds);
         Agreement worst;
         comparePairs(one, jobs[0], found[0], worst);
         compareDraws(one, jobs[1], found[1], worst);
@@ -206,9 +256,9 @@ void prove(Language language, Run runner = {}, const std::vector<SampleCase>& pr
             "{:<24} wi {:.1e}  pdf {:.1e}, of pairs {:.1e}  chi-square p {:.3f}  albedo {:.1f} "
             "standard errors\n",
             one.name, worst.wi, worst.pdf, worst.other, laws.probability, laws.albedo);
-        EXPECT_LE(worst.wi, bounds.here());
-        EXPECT_LE(worst.pdf, bounds.here());
-        EXPECT_LE(worst.other, bounds.here());
+        EXPECT_LE(worst.wi, samplingBounds.here());
+        EXPECT_LE(worst.pdf, samplingBounds.here());
+        EXPECT_LE(worst.other, samplingBounds.here());
         EXPECT_GT(laws.probability, test::sidak(proved.size() * sampleElevations().size() * 7));
         EXPECT_LE(laws.albedo, 4);
     }
@@ -225,6 +275,10 @@ TEST(ProposalShader, SlangOnVulkan) {
 }
 TEST(ProposalShader, WgslOnVulkan) {
     prove(Language::wgsl);
+}
+TEST(ProposalShader, SpirvModulesOnVulkan) {
+    if (!gpu::compilesGlsl()) GTEST_SKIP() << "built without Vulkan (libvulkan-dev)";
+    prove(Language::glsl, {}, cases(), true);
 }
 TEST(ProposalShader, GlslOnOpenGl) {
     prove(Language::glsl, runOpenGl);

@@ -35,7 +35,7 @@ std::vector<float> runOn(const gpu::ComputeDevice& device, const BoundShader& sh
     {
         gpu::ComputeProgram program(device, words, shader.resources);
         program.run(static_cast<std::uint32_t>(shader.invocations / 64));
-        found = program.read(4);
+        found = program.read(shader.written);
     }
     found.resize(shader.invocations * shader.outputs);
     const std::vector<std::string> messages = device.messages();

@@ -3,6 +3,7 @@
 #include <hshfit/gpu/vulkan/compute.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -25,15 +26,16 @@ struct Refused : std::runtime_error {
 enum class Api { vulkan, openGl, openGlEs };
 std::string_view apiName(Api api);  ///< "Vulkan", "OpenGL", "OpenGL ES"
 
-/// A shader and what it is run on. Compute shaders have 64 invocations a group and write storage
-/// buffer 4. A fragment shader (OpenGL ES) draws a square of pixels into four float targets; its
+/// A shader and what it is run on. Compute shaders have 64 invocations a group and write a storage
+/// buffer. A fragment shader (OpenGL ES) draws a square of pixels into four float targets; its
 /// textures are bound by the names of egl_runner.cpp, and it has no buffers.
 struct BoundShader {
     Api api = Api::vulkan;
     std::string program;  ///< SPIR-V of Vulkan, GLSL of the others
     std::vector<gpu::ComputeResource> resources = {};
     std::size_t invocations = 0;
-    std::size_t outputs = 0;  ///< numbers of an invocation
+    std::size_t outputs = 0;    ///< numbers of an invocation
+    std::uint32_t written = 4;  ///< the binding of the buffer that a shader for Vulkan writes
 };
 
 /// A flat float32 texture of vectors of `size` numbers, for shaders that fetch without a filter.

@@ -154,6 +154,7 @@ void keepShader(const std::string& folder, const KeptShader& kept) {
                        {"resources", resources},
                        {"invocations", kept.shader.invocations},
                        {"outputs", kept.shader.outputs},
+                       {"written", kept.shader.written},
                        {"values", numbers.put(singles(kept.wanted.values))},
                        {"scales", numbers.put(singles(kept.wanted.scales))},
                        {"software", kept.bounds.software},
@@ -185,6 +186,7 @@ KeptShader readKeptShader(const std::string& path) {
         kept.shader.resources.push_back(resourceOf(resource, numbers));
     kept.shader.invocations = json.at("invocations");
     kept.shader.outputs = json.at("outputs");
+    kept.shader.written = json.at("written");
     const std::vector<float> values = numbers.get<float>(json.at("values")),
                              scales = numbers.get<float>(json.at("scales"));
     kept.wanted = {{values.begin(), values.end()}, {scales.begin(), scales.end()}};

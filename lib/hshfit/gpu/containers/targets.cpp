@@ -49,7 +49,7 @@ std::vector<Target> makeTargets() {
     }
     rows.push_back({Target::Kind::binary,
                     "spirv",
-                    "a SPIR-V module for Vulkan: a compute shader that evaluates pairs",
+                    "SPIR-V modules for Vulkan: compute shaders that evaluate, sample and light",
                     {}});
     rows.push_back({Target::Kind::viewer,
                     "viewer",
