@@ -122,12 +122,14 @@ std::string program(const EngineFile& row, const std::string& text, bool texture
         "float3 n : NORMAL, float3 a : TANGENT, float3 v : VIEW, float3 l : LIGHT";
     if (row.suffix == "_unreal.ush") {
         const std::string set = textures ? "m.strip = Strip; m.stripSampler = StripSampler; " : "";
-        return "#line 1\nTexture2D Strip;\nSamplerState StripSampler;\n" + text + "float4 main(" +
-               inputs + ") : SV_Target { HshfitMaterial m; " + set +
+        // A sampler of the snippet's own would be no declaration then.
+        return "#define hsh_sampler 1\nTexture2D Strip;\nSamplerState StripSampler;\n" + text +
+               "float4 main(" + inputs + ") : SV_Target { HshfitMaterial m; " + set +
                "return float4(m.reflected(n, a, v, l), 1.0); }\n";
     }
     const std::string set = textures ? ", array" : "";
-    return "struct UnityTexture2DArray { Texture2DArray<float4> tex; SamplerState samplerstate; "
+    return "#define hsh_sampler 1\nstruct UnityTexture2DArray { Texture2DArray<float4> tex; "
+           "SamplerState samplerstate; "
            "};\n"
            "#define half3 float3\n"
            "#define SAMPLE_TEXTURE2D_ARRAY_LOD(t, s, uv, k, l) t.SampleLevel(s, float3(uv, k), l)\n"
