@@ -107,7 +107,7 @@ IncidentGrid incidentGrid(const Brdf& brdf, const RglResolution& resolution) {
         grid.phi = {0};
         return grid;
     }
-    const std::size_t quarters = brdf.laws().mirrorSymmetric ? 1 : 4;
+    const std::size_t quarters = brdf.laws().mirrorSymmetric && !resolution.wholeCircle ? 1 : 4;
     const std::size_t steps = quarters * (resolution.phi - 1);
     for (std::size_t p = 0; p <= steps; ++p) {
         const double turn = static_cast<double>(p) / static_cast<double>(resolution.phi - 1);
@@ -213,7 +213,8 @@ RglTables sampleRgl(const Brdf& brdf, const RglResolution& resolution, const Wri
     RglTables tables;
     tables.description = brdf.name();
     tables.isotropic = brdf.laws().isotropic;
-    tables.reduction = tables.isotropic ? 0 : brdf.laws().mirrorSymmetric ? 4 : 1;
+    const bool quarter = brdf.laws().mirrorSymmetric && !resolution.wholeCircle;
+    tables.reduction = tables.isotropic ? 0 : quarter ? 4 : 1;
     tables.incident = incidentGrid(brdf, resolution);
     tables.channels =
         brdf.channels().kind == Channels::Kind::grey ? Channels::rgb() : brdf.channels();

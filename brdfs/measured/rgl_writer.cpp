@@ -1,3 +1,4 @@
+#include <brdfs/measured/rgl_pbrt.h>
 #include <brdfs/measured/rgl_writer.h>
 #include <hshfit/brdf/transmission.h>
 #include <hshfit/error.h>
@@ -119,6 +120,10 @@ std::size_t chosen(const Parameters& parameters, std::string_view name, std::siz
     return static_cast<std::size_t>(value);
 }
 
+bool isForPbrt(const Parameters& parameters) {
+    return parameters.choice("for") == "pbrt";
+}
+
 RglResolution resolutionOf(const Brdf& brdf, const Parameters& parameters) {
     RglResolution resolution;
     if (!brdf.laws().isotropic) {
@@ -136,6 +141,7 @@ RglResolution resolutionOf(const Brdf& brdf, const Parameters& parameters) {
     if (from == "retro-reflection") resolution.from = NormalsFrom::retroReflection;
     if (from == "average") resolution.from = NormalsFrom::average;
     if (from == "uniform") resolution.from = NormalsFrom::uniform;
+    resolution.wholeCircle = isForPbrt(parameters);
     return resolution;
 }
 
@@ -147,7 +153,9 @@ RglTables tablesOf(const Brdf& brdf, const Parameters& parameters, const WriteOp
     const bool kept =
         parameters.choice("from") == "auto" &&
         std::ranges::none_of(sampling, [&](const char* name) { return isSet(parameters, name); });
-    if (source != nullptr && kept) return copyOf(source->tables());
+    const bool whole = source == nullptr || source->tables().reduction < 2;
+    if (source != nullptr && kept && (whole || !isForPbrt(parameters)))
+        return copyOf(source->tables());
     return sampleRgl(brdf, resolutionOf(brdf, parameters), options, alterations);
 }
 
@@ -171,6 +179,7 @@ std::vector<std::string> writeRgl(const Brdf& brdf, const std::string& path,
             "reciprocity is kept within the error of interpolation only: the format holds both "
             "sides");
     }
+    if (isForPbrt(parameters)) makeFitForPbrt(tables, alterations);
     writeRglTables(tables, path, options);
     return alterations;
 }
@@ -230,6 +239,11 @@ const Writer& rglWriter() {
               .kind = Parameter::Kind::choice,
               .fallback = {},
               .choices = {"auto", "retro-reflection", "average", "uniform"}},
+             {.name = "for",
+              .help = "pbrt: pbrt-v4, which takes spectra and whole circles alone",
+              .kind = Parameter::Kind::choice,
+              .fallback = {},
+              .choices = {"any", "pbrt"}},
              {.name = "first_nm",
               .help = "shortest wavelength kept",
               .fallback = 1,

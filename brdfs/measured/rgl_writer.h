@@ -24,6 +24,7 @@ struct RglResolution {
     /// None: retro-reflection, or the average if that fits the BRDF better, or uniform if the
     /// BRDF gives no distribution.
     std::optional<NormalsFrom> from = {};
+    bool wholeCircle = false;  ///< azimuths all around, of mirror-symmetric BRDFs too
 };
 
 /// f sampled at the vertices of the RGL layout (rgl.h), so that the layout evaluates to f there.

@@ -4,6 +4,7 @@
 #include <jobs/source/picture.h>
 #include <jobs/source/source.h>
 
+#include <hshfit/brdf/colour.h>
 #include <hshfit/error.h>
 #include <hshfit/files/file_set.h>
 #include <hshfit/files/output_rule.h>
@@ -74,6 +75,17 @@ std::unique_ptr<Brdf> openWritten(const Brdf& input, const std::string& output,
     return brdfs::open(output);
 }
 
+/// The file that was written, as RGB where spectra stand for the colours of the input.
+std::unique_ptr<Brdf> openComparable(const Brdf& input, const std::string& output,
+                                     const brdfs::Parameters& parameters) {
+    auto read = openWritten(input, output, parameters);
+    const auto isSpectral = [](const Brdf& brdf) {
+        return brdf.channels().kind == Channels::Kind::spectral;
+    };
+    if (isSpectral(*read) && !isSpectral(input)) return asRgb(std::move(read));
+    return read;
+}
+
 /// Reads the file back and compares it with the BRDF that it was written from.
 ConversionLoss measureLoss(const Brdf& input, const brdfs::Writer& writer,
                            const std::string& output, const brdfs::Parameters& parameters,
@@ -82,7 +94,7 @@ ConversionLoss measureLoss(const Brdf& input, const brdfs::Writer& writer,
         throw UsageError(fmt::format("{}: {} is for other programs to read; nothing here reads it",
                                      Setting{"ConvertOptions::measureLoss"}, writer.name));
     }
-    const auto read = openWritten(input, output, parameters);
+    const auto read = openComparable(input, output, parameters);
     const OutgoingSet outgoing =
         outgoingOrDefault(options.outgoing, input.laws().isotropic ? *read : input);
     return {outgoing.spec(), compare(input, *read, outgoing, selectMetrics("all"),
@@ -97,7 +109,7 @@ void stateError(const Brdf& input, const std::string& output, const brdfs::Param
     const OutgoingSet outgoing =
         input.laws().isotropic ? OutgoingSet::elevations(6) : OutgoingSet::parabolic(6, 6);
     try {
-        const auto read = openWritten(input, output, parameters);
+        const auto read = openComparable(input, output, parameters);
         result.error =
             compare(input, *read, outgoing, selectMetrics("relative-l2-cosine"), {.level = 1})[0]
                 .value;

@@ -3,6 +3,8 @@
 #include <brdfs/measured/rgl_normals.h>
 #include <brdfs/measured/rgl_writer.h>
 #include <brdfs/rows/spec.h>
+#include <hshfit/brdf/colour.h>
+#include <hshfit/files/tensor_file.h>
 #include <hshfit/projection/albedo.h>
 
 #include <brdfs/measured_files.h>
@@ -224,6 +226,84 @@ TEST(RglWriter, spectraKeepTheirWavelengths) {
     const auto g = evaluate(*some, {0, 0.6, 0.8}, {0, 0, 1});
     EXPECT_NEAR(g[1] / g[0], 2, 1e-5);
     EXPECT_THROW(write(brdf, file.path(), "first_nm=700"), UsageError);
+}
+
+/// The fields that MeasuredBRDF::Create of pbrt-v4 asks for, their dimensions, and its circle of
+/// azimuths. The dimensions of its spectra, whose last two pbrt wants to be equal.
+std::vector<std::uint64_t> expectPbrtTakes(const std::string& path, bool isotropic) {
+    const std::string content = contentOf(path);
+    const TensorFile file({reinterpret_cast<const unsigned char*>(content.data()), content.size()},
+                          path);
+    const auto shape = [&](const char* name) { return file.field(name).shape; };
+    const auto phi = shape("phi_i")[0], theta = shape("theta_i")[0];
+    EXPECT_EQ(shape("description").size(), 1u);
+    EXPECT_EQ(shape("ndf").size(), 2u);
+    EXPECT_EQ(shape("sigma").size(), 2u);
+    EXPECT_EQ(shape("jacobian"), std::vector<std::uint64_t>{1});
+    const auto vndf = shape("vndf"), luminance = shape("luminance"), spectra = shape("spectra");
+    if (spectra.size() != 5) throw std::runtime_error("spectra of other dimensions");
+    EXPECT_EQ(vndf.size(), 4u);
+    EXPECT_EQ(vndf[0], phi);
+    EXPECT_EQ(vndf[1], theta);
+    EXPECT_EQ(luminance, (std::vector<std::uint64_t>{phi, theta, spectra[3], spectra[4]}));
+    EXPECT_EQ(spectra[0], phi);
+    EXPECT_EQ(spectra[1], theta);
+    EXPECT_EQ(spectra[2], shape("wavelengths")[0]);
+    EXPECT_EQ(file.octets(file.field("jacobian"))[0], 1);
+    EXPECT_EQ(phi <= 2, isotropic);
+    if (isotropic) return spectra;
+    const auto azimuths = file.floats(file.field("phi_i"), 1);
+    EXPECT_EQ(std::rint(2 * pi / static_cast<double>(azimuths.back() - azimuths.front())), 1);
+    return spectra;
+}
+
+/// Seen as RGB, a file for pbrt is the file for anybody: its spectra have the colours.
+TEST(RglWriter, filesForPbrtHaveSpectraOfTheColours) {
+    const char* const specs[] = {"ggx:alpha=.3,F0=.9/.6/.1,kd=.02/0/.5", "lambert:kd=0.5",
+                                 "ward:kd=.1/0/.4,ks=.2,ax=.2,ay=.5"};
+    for (const char* spec : specs) {
+        for (const char* from : {"auto", "uniform"}) {
+            const auto brdf = brdfs::open(spec);
+            const TemporaryFile plain("", ".bsdf"), file("", ".bsdf");
+            const std::string options =
+                std::string("theta=5,phi=3,slice=8,normals=16,from=") + from;
+            write(*brdf, plain.path(), options);
+            EXPECT_TRUE(mentions(write(*brdf, file.path(), options + ",for=pbrt"), "D65")) << spec;
+            const auto shape = expectPbrtTakes(file.path(), brdf->laws().isotropic);
+            EXPECT_EQ(shape[3], shape[4]);
+            const auto seen = asRgb(brdfs::open(file.path())), colours = brdfs::open(plain.path());
+            if (!brdf->laws().isotropic) {
+                // Vertices are not mirrored onto each other, so that values between them differ.
+                EXPECT_LT(errorOf(*brdf, *seen), 1.2 * errorOf(*brdf, *colours)) << spec;
+                continue;
+            }
+            std::mt19937 random(3);
+            int compared = 0;
+            for (int i = 0; i < 200; ++i) {
+                const Direction wi = test::randomDirection(random),
+                                wo = test::randomDirection(random);
+                const auto f = evaluate(*colours, wi, wo), g = evaluate(*seen, wi, wo);
+                // Below 0 after interpolation, colours are cut one by one and wavelengths too.
+                if (*std::ranges::min_element(f) <= 0) continue;
+                ++compared;
+                const double most = *std::ranges::max_element(f);
+                for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(g[c], f[c], 2e-5 * most) << spec;
+            }
+            EXPECT_GT(compared, 100) << spec;
+        }
+    }
+}
+
+TEST(RglWriter, rglSourcesBecomeFilesForPbrt) {
+    using test::RglShape;
+    for (const RglShape& shape : {RglShape{}, RglShape{.channels = 7}, RglShape{.jacobian = false},
+                                  RglShape{.phi = {-3.1415927F, -2.0F, -1.5707964F}}}) {
+        const TemporaryFile source(test::tensorFile(test::rglFields(shape)), ".bsdf");
+        const TemporaryFile file("", ".bsdf");
+        const auto before = brdfs::open(source.path());
+        write(*before, file.path(), "for=pbrt");
+        expectPbrtTakes(file.path(), before->laws().isotropic);
+    }
 }
 
 TEST(RglWriter, listsItsAlterations) {

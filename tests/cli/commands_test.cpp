@@ -29,6 +29,24 @@ TEST_F(Cli, ConvertRepairsOnlyWhatIsAskedAndSaysSo) {
     expectError("convert --to merl:size=3 lambert " + path("d.binary"), 2, "size", 2);
 }
 
+/// Spectra that stand for colours are compared as these colours.
+TEST_F(Cli, ConvertStatesTheLossOfFilesForPbrt) {
+    const auto lossOf = [&](const std::string& file, const std::string& options) {
+        const Answer answer =
+            run("convert ggx:alpha=.4,F0=.9/.5/.1 " + path(file) +
+                " --to rgl:theta=8,slice=24,normals=32" + options + " --report-loss --json");
+        EXPECT_EQ(answer.code, 0) << answer.err;
+        EXPECT_TRUE(keepsSchema(answer.out, "convert"));
+        const std::size_t loss = answer.out.find("\"relative-l2-cosine\"");
+        const std::size_t value = answer.out.find("\"value\"", loss);
+        return std::stod(answer.out.substr(answer.out.find(':', value) + 1));
+    };
+    const double colours = lossOf("a.bsdf", ""), spectra = lossOf("b.bsdf", ",for=pbrt");
+    EXPECT_GT(colours, 1e-4);
+    EXPECT_NEAR(spectra, colours, 1e-3 * colours);
+    expectError("convert lambert " + path("c.bsdf") + " --to rgl:for=mitsuba", 2, "pbrt", 2);
+}
+
 TEST_F(Cli, UsageErrorsNameWhatIsValid) {
     expectError("frobnicate", 2, "; see hshfit help", 0);
     expectError("tradeof lambert", 2, "did you mean 'tradeoff'", 0);
