@@ -34,6 +34,7 @@ vec3 hsh_eval(vec3 wo, vec3 wi) {
 }
 """
 FORMS = (("--form halfway", ("constants", "texture")),
+         ("--form halfway --halfway 4,3,3", ("constants", "texture")),
          ("--form halfway --halfway 5,4,3", ("constants", "texture")),
          ("--form halfway --halfway 8,4,3", ("constants", "texture")),
          ("--form halfway --halfway 13,12,8", ("constants", "texture")),
