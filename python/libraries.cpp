@@ -29,10 +29,11 @@ namespace ml = material_library;
 struct Opened {
     std::string path;
     ml::Library library;
+    std::vector<std::string> leftOut = {};  ///< specifications that `learn` had no time for
 };
 
 std::shared_ptr<Opened> opened(const std::string& path) {
-    auto library = std::make_shared<Opened>(Opened{path, {}});
+    auto library = std::make_shared<Opened>(Opened{.path = path, .library = {}});
     unwatched({}, [&] { library->library = ml::readLibrary(path); });
     return library;
 }
@@ -66,9 +67,9 @@ std::shared_ptr<Opened> learned(const py::object& specs, const py::object& file,
     how.limits = {options.encode.log.value_or(how.limits.log),
                   options.encode.maximum.value_or(how.limits.maximum),
                   options.encode.flip.value_or(how.limits.flip)};
-    auto library = std::make_shared<Opened>(Opened{pathOf(file, "file"), {}});
+    auto library = std::make_shared<Opened>(Opened{.path = pathOf(file, "file"), .library = {}});
     watched(progress, {}, [&](const jobs::Listener& listener) {
-        jobs::learnLibrary(sources, library->path, how, listener);
+        library->leftOut = jobs::learnLibrary(sources, library->path, how, listener).leftOut;
         library->library = ml::readLibrary(library->path);
     });
     return library;
@@ -206,6 +207,9 @@ void bindLibraries(py::module_& module) {
         .def_property_readonly(
             "path", [](const Opened& self) { return self.path; }, "The file.")
         .def_property_readonly("names", namesOf, "The names of the materials, sorted.")
+        .def_property_readonly(
+            "left_out", [](const Opened& self) { return self.leftOut; },
+            "Specifications that `learn` left out since the time was over; add_to adds them later.")
         .def_property_readonly("mean", meanOf, "The mean, (functions,).")
         .def_property_readonly("components", componentsOf,
                                "The components, (components, functions).")

@@ -319,6 +319,7 @@ class Library:
         limit_maximum: Optional[float] = ...,
         limit_flip: Optional[float] = ...,
         add_to: Optional[Path] = ...,
+        seconds: Optional[float] = ...,
         final: bool = ...,
         progress: Progress = ...,
     ) -> Library: ...
@@ -326,6 +327,8 @@ class Library:
     def path(self) -> str: ...
     @property
     def names(self) -> List[str]: ...
+    @property
+    def left_out(self) -> List[str]: ...
     @property
     def mean(self) -> Floats: ...
     @property

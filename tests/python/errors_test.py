@@ -5,6 +5,7 @@ import signal
 import threading
 import time
 import unittest
+import warnings
 
 import numpy as np
 
@@ -183,6 +184,21 @@ class Stopping(program.InFolder):
         waits = hshfit.function(self.slow, isotropic=True)
         self.stop(lambda: waits.write("big.binary", format="merl"))
         self.assertEqual(os.listdir("."), [])
+
+    def test_learning_ends_after_the_seconds(self):
+        specs = [f"lambert:kd={n / 100}+ggx:alpha={0.2 + n / 100},F0=.04" for n in range(1, 9)]
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            library = hshfit.Library.learn(specs, "some.library", components=2, limit=10,
+                                           limit_maximum=10, limit_flip=1, seconds=0.01)
+        # The functions of libraries alone take longer at their pairs, and two materials are read.
+        self.assertGreaterEqual(len(library.names), 2)
+        self.assertGreater(len(library.left_out), 0)
+        self.assertEqual(len(library.names) + len(library.left_out), len(specs))
+        self.assertEqual(library.left_out, [spec for spec in specs if spec in library.left_out])
+        self.assertIn(f"{len(library.names)} of {len(specs)} materials", str(said[0].message))
+        whole = hshfit.Library.learn(library.left_out, "whole.library", add_to="some.library")
+        self.assertEqual((len(whole.names), whole.left_out), (len(specs), []))
 
     def test_an_exception_of_progress_stops_the_work(self):
         def progress(part, done, total):

@@ -411,6 +411,7 @@ class SameNumbers(program.InFolder):
                              "--sigma", "5%", "-o", "again.library")
         for key, value in found.items():
             self.assertEqual(value, again[key])
+        self.assertEqual(ours.left_out, [])
         with self.assertRaises(hshfit.UsageError):
             ours.coefficients("nobody")
         with self.assertRaises(hshfit.UsageError):
