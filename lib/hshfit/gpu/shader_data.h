@@ -5,6 +5,9 @@
 
 #include <kainjow/mustache.hpp>
 
+#include <cstddef>
+#include <vector>
+
 namespace hshfit::gpu {
 
 /// A number as every shading language writes it: the nearest single-precision value.
@@ -45,9 +48,11 @@ void setBasis(const Payload& payload, const Basis& basis, kainjow::mustache::dat
 void setEvaluation(const Payload& payload, kainjow::mustache::data& data, ShaderCost& cost);
 /// Environment, weights, lookups, sums and outputs of `shade`. For grey and RGB payloads one pass
 /// takes the three colours of the light; else there is a pass per channel, and the environment is
-/// an array of structs or, if `flat`, of numbers, slot by slot.
-void setShading(const Payload& payload, const Basis& basis, int environmentOrder, bool flat,
-                kainjow::mustache::data& data, ShaderCost& cost);
+/// an array of structs or, if `flat`, of numbers, slot by slot. Returns the places in
+/// Payload::slots of the functions that such light meets, ascending: the others have no weight.
+std::vector<std::size_t> setShading(const Payload& payload, const Basis& basis,
+                                    int environmentOrder, bool flat, kainjow::mustache::data& data,
+                                    ShaderCost& cost);
 
 /// Turns of `shadeWorld`: R_z(alpha) S R_z(-beta) S R_z(gamma) on the coefficients of the light, S
 /// the exchange of y and z, a sparse matrix per band (rotation/sh_rotation.h), with sines and

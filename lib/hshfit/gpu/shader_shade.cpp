@@ -155,8 +155,8 @@ data rgbLookups(const Payload& payload, const Weights& weights, const Pass& pass
 
 }  // namespace
 
-void setShading(const Payload& payload, const Basis& basis, int environmentOrder, bool flat,
-                data& page, ShaderCost& cost) {
+std::vector<std::size_t> setShading(const Payload& payload, const Basis& basis,
+                                    int environmentOrder, bool flat, data& page, ShaderCost& cost) {
     const Weights weights = weightsOf(payload, basis, environmentOrder);
     const bool colours = payload.head.channels.kind != Channels::Kind::spectral;
     const std::size_t lights = colours ? 3 : payload.head.channels.count();
@@ -205,6 +205,9 @@ void setShading(const Payload& payload, const Basis& basis, int environmentOrder
         }
     }
     page.set("turns", turns);
+    std::vector<std::size_t> lit;
+    for (const auto& [j, elements] : weights) lit.push_back(j);
+    return lit;
 }
 
 }  // namespace hshfit::gpu

@@ -31,7 +31,7 @@ MapPlace placeAt(const ShaderJob& job, std::size_t k) {
     return {job.places[3 * k], job.places[3 * k + 1], job.places[3 * k + 2]};
 }
 
-ShaderJob jobOf(const MaterialMap& map, Wrap wrap) {
+ShaderJob jobOf(const MaterialMap& map, Wrap wrap, int bands = 5) {
     const MapSidecar& s = map.sidecar();
     const auto texels = [&](std::size_t level) {
         gpu::Texels of;
@@ -47,7 +47,7 @@ ShaderJob jobOf(const MaterialMap& map, Wrap wrap) {
     payload.head.channels = s.channels;
     payload.coefficients = texels(0);
     if (s.form != "outgoing") payload.basisTexels = sharedNumbers(s).texels;
-    ShaderJob job = makeJob(std::move(payload), 5);
+    ShaderJob job = makeJob(std::move(payload), bands);
     for (std::size_t level = 1; level < s.levels.size(); ++level)
         job.levels.push_back(texels(level));
     job.places = test::mapPlaces(s.levels, job.pairs.wo.size(), wrap == Wrap::repeat ? 3 : 0.2);
@@ -188,6 +188,25 @@ TEST(MapShader, OslAsCpp) {
 }
 TEST(MapShader, LightInTheWorldOnVulkan) {
     prove(Language::glsl, {}, true);
+}
+
+/// Light of fewer bands than the functions of a map have meets some of these functions alone.
+TEST(MapShader, LightOfTwoBandsIsThatOfTheQuadrature) {
+    for (const Proof& proof : proofs(false)) {
+        const Wrap wrap = proof.sample.wrap;
+        const ShaderJob job = jobOf(*proof.map, wrap, 2);
+        const std::string snippet =
+            mapShader(Language::metal, proof.map->sidecar(), {.environmentOrder = 2, .wrap = wrap});
+        try {
+            const auto found = run(Language::metal, job, wrapped(Language::metal, job, snippet));
+            const Difference difference = compare(job, mapReference(*proof.map, job, wrap), found);
+            EXPECT_LE(difference.shade, boundsOf(proof.sample).here()) << proof.sample.name;
+        } catch (const Missing& reason) {
+            GTEST_SKIP() << reason.what();
+        } catch (const Refused& reason) {
+            ADD_FAILURE() << proof.sample.name << ": " << reason.what();
+        }
+    }
 }
 
 /// A shader with a fault gives something else: the test can fail.

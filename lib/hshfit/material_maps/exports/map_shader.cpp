@@ -100,9 +100,11 @@ std::vector<std::string> named(const char* name, std::size_t count) {
     return names;
 }
 
-/// Sums of a function: of the numbers b of `eval`, or of e, which have a lane for each colour.
-data sumsOf(const MapSidecar& map, const std::string& prefix, const std::string& pass, bool light,
-            gpu::ShaderCost& cost) {
+/// Sums of a function: of the numbers b of `eval`, or, where `lit` has the functions that the light
+/// meets, of e, which have a lane for each colour.
+data sumsOf(const MapSidecar& map, const std::string& prefix, const std::string& pass,
+            const std::optional<std::vector<std::size_t>>& lit, gpu::ShaderCost& cost) {
+    const bool light = lit.has_value();
     const bool grey = map.channels.count() == 1, sharing = map.form != "outgoing";
     const std::size_t slots = map.layout.slots.size(), rank = sharing ? map.rank() : 0;
     const auto texel = [&](std::string place) {
@@ -111,8 +113,10 @@ data sumsOf(const MapSidecar& map, const std::string& prefix, const std::string&
     const auto number = [&](std::string place) {
         return fmt::format("{}_sharedTexel({}{})", prefix, pass, place);
     };
-    const auto function = [light](std::size_t i, std::size_t colour) {
-        return light ? fmt::format("e{}.{}", i, gpu::laneNames[colour]) : fmt::format("b{}", i);
+    const auto function = [&](std::size_t i, std::size_t colour) {
+        if (!light) return fmt::format("b{}", i);
+        const bool met = std::ranges::binary_search(*lit, i);
+        return met ? fmt::format("e{}.{}", i, gpu::laneNames[colour]) : std::string("0.0");
     };
     using Colours = std::vector<std::size_t>;
     const Colours all = light ? Colours{0, 1, 2} : Colours{0};
@@ -253,11 +257,12 @@ std::string mapShader(Language language, const MapSidecar& map, const MapShaderO
     setNodes(map.layout.outgoing, groups, page);
     gpu::ShaderCost eval, shade, world;
     gpu::setBasis(payload, *basis, page, eval);
-    page.set("evalSums", sumsOf(map, options.prefix, words.pass, false, eval));
+    page.set("evalSums", sumsOf(map, options.prefix, words.pass, {}, eval));
     setLight(language, options, page);
     if (options.environmentOrder > 0) {
-        gpu::setShading(payload, *basis, options.environmentOrder, false, page, shade);
-        page.set("shadeSums", sumsOf(map, options.prefix, words.pass, true, shade));
+        const auto lit =
+            gpu::setShading(payload, *basis, options.environmentOrder, false, page, shade);
+        page.set("shadeSums", sumsOf(map, options.prefix, words.pass, lit, shade));
         gpu::setFrameTurn(payload, options.environmentOrder, false, page, world);
     }
     const auto cost = [&](const std::string& name, const gpu::ShaderCost& of) {
