@@ -51,6 +51,10 @@ public:
                 listener_.say(fmt::format("left out: {}", error.what()));
             }
         }
+        if (!result_.textures.empty()) {
+            const auto others = map_->writeOthers(result_.name, files_);
+            result_.textures.insert(result_.textures.end(), others.begin(), others.end());
+        }
         files_.write(result_.sidecar, map_->sidecar(result_.textures, tests_));
         files_.write(result_.test, map_->testText(tests_));
         map_->checkIntact();

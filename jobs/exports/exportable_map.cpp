@@ -103,8 +103,12 @@ public:
     std::vector<MapTextureFile> writeKtx2(const std::string& name, FileSet& files) const override {
         return writeLibraryMapKtx2(map_, functions_, name, files);
     }
-    std::vector<MapTextureFile> writeExr(const std::string&, FileSet&) const override {
-        throw UsageError("exr-parts are for OSL, in which a map of the form library has no shader");
+    std::vector<MapTextureFile> writeExr(const std::string& name, FileSet& files) const override {
+        return writeLibraryMapExr(map_, functions_, name, files);
+    }
+    std::vector<MapTextureFile> writeOthers(const std::string& name,
+                                            FileSet& files) const override {
+        return {writeMapLibrary(map_, name, files)};
     }
     std::string shader(gpu::Language language, const std::string& prefix, int) const override {
         return libraryMapShader(language, map_, functions_, {.prefix = prefix, .wrap = wrap_});
@@ -190,6 +194,10 @@ private:
 };
 
 }  // namespace
+
+std::vector<MapTextureFile> ExportableMap::writeOthers(const std::string&, FileSet&) const {
+    return {};
+}
 
 std::vector<OrdinaryMips> ExportableMap::writeMips(const std::string& name, FileSet&) const {
     throw UsageError(fmt::format(

@@ -33,6 +33,8 @@ public:
     virtual std::vector<MapTextureFile> writeKtx2(const std::string& name,
                                                   FileSet& files) const = 0;
     virtual std::vector<MapTextureFile> writeExr(const std::string& name, FileSet& files) const = 0;
+    /// Files that go with textures of either kind.
+    virtual std::vector<MapTextureFile> writeOthers(const std::string& name, FileSet& files) const;
     /// Mips for an engine's own material. Throws UsageError for maps without normals.
     virtual std::vector<OrdinaryMips> writeMips(const std::string& name, FileSet& files) const;
     virtual std::string shader(gpu::Language language, const std::string& prefix,

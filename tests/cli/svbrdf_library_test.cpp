@@ -187,6 +187,30 @@ TEST_F(SvbrdfLibrary, SpoiltFilesAreRefusedInOneLine) {
     EXPECT_EQ(run("info " + path("m/material.json:x=8,y=1")).code, 2);
 }
 
+/// The library goes along once, whatever the textures are for.
+TEST_F(SvbrdfLibrary, ExportsTexturesForOslBesideTheOthers) {
+    describe();
+    made("-o " + path("m") + " --checks 0 --components 3");
+    const Answer answer = run("export " + path("m/material.json") + " -o " + path("out") +
+                              " --target ktx2,exr-parts,osl");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    const std::string sidecar = bytes("out/material.hsh.json");
+    EXPECT_TRUE(keepsSchema(sidecar, "gpu_library_map"));
+    std::vector<std::string> names;
+    const Json document = Json::parse(sidecar);
+    for (const Json& file : document["files"]) names.push_back(file["path"]);
+    EXPECT_EQ(names, (std::vector<std::string>{"material.map.exr", "material.functions.exr",
+                                               "material.map.ktx2", "material.functions.ktx2",
+                                               "material.library"}));
+    for (const std::string& name : names)
+        EXPECT_TRUE(std::filesystem::exists(path("out/" + name))) << name;
+    EXPECT_NE(bytes("out/material_hsh.osl").find("float fourth"), std::string::npos);
+    const Answer dark = run("export " + path("m/material.json") + " -o " + path("dark") +
+                            " --target viewer --light studio");
+    EXPECT_EQ(dark.code, 2) << dark.err;
+    EXPECT_NE(dark.err.find("take no light of an environment"), std::string::npos) << dark.err;
+}
+
 TEST_F(SvbrdfLibrary, BytesDoNotDependOnThreadsAndMemory) {
     describe();
     made("-o " + path("a") + " --checks 0 --threads 1");

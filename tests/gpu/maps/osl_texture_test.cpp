@@ -116,4 +116,33 @@ TEST(OslTexture, FilterWidthsGiveTheLevelsOfOddSides) {
             });
 }
 
+/// A table of functions has one level and many more rows than columns; the file goes on with levels
+/// that the shader never reads.
+TEST(OslTexture, TablesOfOneLevelAreFiltered) {
+    const test::TemporaryFolder folder;
+    const std::vector<LevelSize> levels{{9, 150}};
+    std::mt19937 random(6);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    std::vector<double> values(9 * 150 * 4 * 2);
+    for (double& value : values) value = uniform(random);
+    const gpu::Texels texels = gpu::encode(values, 9, 150, 2, gpu::Number::float16);
+    const std::vector<double> stored = gpu::decode(texels);
+    FileSet files(folder.path().string(), false);
+    writeTextureExr("functions", "table.exr",
+                    {.levels = levels,
+                     .layers = 2,
+                     .number = gpu::Number::float16,
+                     .bytes = [&](std::size_t) { return std::span(texels.bytes); }},
+                    files);
+    files.commit();
+    compare(folder / "table.exr", levels, 2, [&](std::size_t, std::size_t column, std::size_t row) {
+        std::vector<double> texel;
+        for (std::size_t layer = 0; layer < 2; ++layer) {
+            const double* at = &stored[((layer * 150 + row) * 9 + column) * 4];
+            texel.insert(texel.end(), at, at + 4);
+        }
+        return texel;
+    });
+}
+
 }  // namespace

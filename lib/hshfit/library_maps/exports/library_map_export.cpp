@@ -64,13 +64,38 @@ std::vector<MapTextureFile> writeLibraryMapKtx2(const LibraryMap& map,
                                            levels);
     made.push_back(writeTextureKtx2("functions", name + ".functions.ktx2",
                                     std::as_bytes(std::span(file)), files));
+    return made;
+}
+
+std::vector<MapTextureFile> writeLibraryMapExr(const LibraryMap& map, const MapFunctions& functions,
+                                               const std::string& name, FileSet& files) {
+    const LibrarySidecar& s = map.sidecar();
+    const gpu::Texels& table = functions.sums.table->texels();
+    const LevelSize size[] = {sizeOf(table)};
+    std::vector<MapTextureFile> made{
+        writeTextureExr("map", name + ".map.exr",
+                        {.levels = s.levels,
+                         .layers = s.layout.layers(),
+                         .number = s.number,
+                         .bytes = [&](std::size_t level) { return map.texture().level(level); }},
+                        files)};
+    map.checkIntact();
+    made.push_back(writeTextureExr("functions", name + ".functions.exr",
+                                   {.levels = size,
+                                    .layers = table.layers,
+                                    .number = table.number,
+                                    .bytes = [&](std::size_t) { return std::span(table.bytes); }},
+                                   files));
+    return made;
+}
+
+MapTextureFile writeMapLibrary(const LibraryMap& map, const std::string& name, FileSet& files) {
     const MappedFile library(map.sidecar().library);
     MapTextureFile copied =
         writeTextureKtx2("library", libraryName(name), std::as_bytes(library.bytes()), files);
     library.checkIntact();
     copied.container = "library";
-    made.push_back(std::move(copied));
-    return made;
+    return copied;
 }
 
 std::string libraryMapExportText(const LibraryMap& map, const MapFunctions& functions, Wrap wrap,

@@ -107,10 +107,6 @@ std::string libraryMapShader(Language language, const LibraryMap& map,
                              const MapFunctions& functions, const MapShaderOptions& options) {
     const LibrarySidecar& s = map.sidecar();
     gpu::checkPrefix(options.prefix);
-    if (language == Language::osl)
-        throw UsageError(
-            "a map of the form library has no shader in OSL; the forms outgoing, low-rank and "
-            "clusters have");
     checkLayers(language, "the map", s.layout.layers(), "fewer components have fewer");
     const gpu::FunctionTable& table = *functions.sums.table;
     gpu::Payload head;

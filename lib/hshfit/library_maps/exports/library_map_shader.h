@@ -25,8 +25,7 @@ std::vector<double> mapValue(const LibraryMap& map, const MapFunctions& function
                              const Direction& wi);
 
 /// A snippet with the functions of `mapShader`, except its functions for light. Throws UsageError
-/// for OSL, whose table would be a second file of another kind, and for more layers than a language
-/// has.
+/// for more layers than a language has.
 std::string libraryMapShader(gpu::Language language, const LibraryMap& map,
                              const MapFunctions& functions, const MapShaderOptions& options);
 
