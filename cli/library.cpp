@@ -202,11 +202,10 @@ void runSearch(const LibraryArguments& arguments, const Globals& globals) {
     std::string text = "material                         FLIP    CIEDE2000  ln(f + 0.001)\n";
     for (const jobs::FoundMaterial& one : found) {
         rows.push_back({{"name", one.name},
-                        {"distance", one.distance ? Json(*one.distance) : Json(nullptr)},
+                        {"distance", one.distance},
                         {"picture", pictureErrorJson(one.picture)}});
-        text += fmt::format("{:<32} {:<7.4f} {:<10.3g} {}\n", one.name, one.picture.flip.mean,
-                            one.picture.colour.mean,
-                            one.distance ? fmt::format("{:.3g}", *one.distance) : "-");
+        text += fmt::format("{:<32} {:<7.4f} {:<10.3g} {:.3g}\n", one.name, one.picture.flip.mean,
+                            one.picture.colour.mean, one.distance);
     }
     if (!globals.json) return printText(text);
     Json document = headOf(arguments);

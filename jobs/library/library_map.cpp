@@ -37,9 +37,7 @@ Seen seenOf(const ml::Library& library, const ml::LogSpace& space, const Listene
         const ml::Material& material = library.materials[m];
         const auto brdf = ml::open(library, material, material.name);
         seen.looks[m] = ml::lookOf(*brdf, thumbnailPixels);
-        std::optional<ml::LogMaterial> logs = ml::logMaterial(library, material);
-        seen.logs[m] = logs ? std::move(*logs)
-                            : space.project(*brdf, material.name, material.source).material();
+        seen.logs[m] = ml::projectedMaterial(space, library, material);
         if (progress) progress(++done, count);
     });
     return seen;

@@ -339,16 +339,15 @@ std::vector<FoundMaterial> searchLibrary(const std::string& path, const std::str
                                          std::size_t count, const Listener& listener) {
     const ml::Library library = ml::readLibrary(path);
     const auto brdf = openSource(spec);
-    std::vector<FoundMaterial> found;
     const ml::LogSpace space;
-    std::optional<ml::LogMaterial> target;
-    if (hasTerms(*brdf)) target = space.project(*brdf, materialName(spec), spec).material();
-    for (const ml::Material& material : library.materials) {
-        const std::optional<ml::LogMaterial> logs = ml::logMaterial(library, material);
-        found.push_back({.name = material.name, .distance = {}, .picture = {}});
-        if (target && logs) found.back().distance = ml::distance(space, *target, *logs);
-    }
-    // Materials without a distance come first: pictures alone decide about them.
+    const ml::LogMaterial target = space.project(*brdf, materialName(spec), spec).material();
+    std::vector<FoundMaterial> found(library.materials.size());
+    eachInParallel(found.size(), [&](std::size_t m) {
+        const ml::Material& material = library.materials[m];
+        found[m].name = material.name;
+        found[m].distance =
+            ml::distance(space, target, ml::projectedMaterial(space, library, material));
+    });
     std::ranges::stable_sort(found, {}, &FoundMaterial::distance);
     found.resize(std::min(found.size(), 3 * count + 5));
     const PictureReference reference(*brdf);

@@ -80,8 +80,7 @@ std::vector<MixedMaterial> mixMaterials(const std::vector<std::string>& specs,
 
 struct FoundMaterial {
     std::string name;
-    /// Root mean square of the difference of ln(f + 0.001); none where either has no terms.
-    std::optional<double> distance = {};
+    double distance = 0;  ///< root mean square of the difference of ln(f + 0.001), in the terms
     PictureError picture;
 };
 

@@ -391,7 +391,7 @@ TEST_F(LibraryCommand, SearchFindsTheMaterialItself) {
     EXPECT_TRUE(std::ranges::is_sorted(flips));
     const std::string brushed = " ggx:ax=.1,ay=.4,F0=.9", b = path("b.library");
     answer("learn" + words(0, 4) + brushed + " --components 2" + free + " -o " + b);
-    EXPECT_TRUE(answer("search " + b + brushed)["found"][0]["distance"].is_null());  // no terms
+    EXPECT_LT(answer("search " + b + brushed)["found"][0]["distance"], 0.5);  // of projections
     for (const Json& row : answer("list " + b)["materials"])
         EXPECT_TRUE(row["error"]["flip"].is_null()) << row;  // no picture was drawn
 }

@@ -2,6 +2,8 @@
 
 #include "job_fixture.h"
 
+#include <brdfs/catalog.h>
+
 #include <hshfit/error.h>
 #include <hshfit/files/checksum.h>
 #include <hshfit/material_library/library_file.h>
@@ -226,6 +228,41 @@ TEST_F(LibraryMaps, TheBrightestMaterialsOfAFileHaveFiniteNumbers) {
             EXPECT_EQ(other["flip"], 0);
         }
     }
+}
+
+/// `search` looks at pictures of eight candidates for one answer: halfway forms are as far as their
+/// projections are, and leave room for nearer materials of the basis.
+TEST_F(LibraryMaps, SearchMeetsTheNearestAmongManyHalfwayForms) {
+    learnFrom({specs[1], specs[3], "ggx:ax=.1,ay=.4,F0=.9"}, "few.library");
+    ml::Library library = ml::readLibrary(path("few.library"));
+    const auto own = std::ranges::find(library.materials, ml::Kind::halfway, &ml::Material::kind);
+    ASSERT_NE(own, library.materials.end());
+    const ml::Material brushed = *own;
+    for (const char* name : {"a1", "a2", "a3", "a4", "a5", "a6", "a7", "a8", "a9"}) {
+        library.materials.push_back(brushed);
+        library.materials.back().name = name;
+    }
+    std::ranges::sort(library.materials, {}, &ml::Material::name);
+    AtomicFile written(path("many.library"));
+    ml::writeLibrary(library, written);
+    written.commit();
+    const auto first = [&](const std::string& spec) {
+        const std::string found = runProgram("library search " + path("many.library") + " '" +
+                                             spec + "' --count 1 --json");
+        EXPECT_TRUE(keepsSchema(found, "library"));
+        return json::parse(found)["found"][0];
+    };
+    EXPECT_EQ(first(specs[1])["name"], "lambert_kd=.5_.5_.1");
+    const json metal = first("ggx:ax=.1,ay=.4,F0=.9");
+    EXPECT_EQ(metal["name"], "a1");
+    const ml::LogSpace space;
+    const auto inTerms = [&](const std::string& spec) {
+        return space.project(*brdfs::open(spec), "x", "x").material();
+    };
+    EXPECT_NEAR(metal["distance"],
+                ml::distance(space, inTerms("ggx:ax=.1,ay=.4,F0=.9"),
+                             inTerms(path("many.library") + ":a1")),
+                1e-9);
 }
 
 TEST_F(LibraryMaps, BadInputEndsInOneLineWithoutAFile) {

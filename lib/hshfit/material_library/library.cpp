@@ -229,6 +229,13 @@ std::optional<LogMaterial> logMaterial(const Library& library, const Material& m
     return std::nullopt;
 }
 
+LogMaterial projectedMaterial(const LogSpace& space, const Library& library,
+                              const Material& material) {
+    if (std::optional<LogMaterial> logs = logMaterial(library, material)) return std::move(*logs);
+    const auto brdf = open(library, material, material.name);
+    return space.project(*brdf, material.name, material.source).material();
+}
+
 std::unique_ptr<Brdf> open(const Library& library, const Material& material,
                            const std::string& name) {
     if (std::optional<LogMaterial> logs = logMaterial(library, material))

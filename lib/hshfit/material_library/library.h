@@ -90,6 +90,11 @@ std::unique_ptr<Brdf> open(const Library& library, const Material& material,
 /// ln(f + logOffset) of a material; none of one with a halfway form.
 std::optional<LogMaterial> logMaterial(const Library& library, const Material& material);
 
+/// The same, of a halfway form its projection: what distances are between. Throws as
+/// LogSpace::project.
+LogMaterial projectedMaterial(const LogSpace& space, const Library& library,
+                              const Material& material);
+
 /// The material of this name; nullptr if there is none.
 const Material* find(const Library& library, std::string_view name);
 
