@@ -1,4 +1,5 @@
-// The map of a library: its answer against the library's own functions, and its page.
+// The map of a library: its answer against the library's own functions, and its page; searches,
+// and errors that learning states.
 
 #include "job_fixture.h"
 
@@ -263,6 +264,27 @@ TEST_F(LibraryMaps, SearchMeetsTheNearestAmongManyHalfwayForms) {
                 ml::distance(space, inTerms("ggx:ax=.1,ay=.4,F0=.9"),
                              inTerms(path("many.library") + ":a1")),
                 1e-9);
+}
+
+class LearnedLibraries : public LibraryMaps {};
+
+/// `learn` has no source when codes are there: it states FLIP from two errors, `encode` draws it.
+TEST_F(LearnedLibraries, StateTheFlipThatEncodeMeasures) {
+    std::string learned =
+        "library learn --components 4 --bytes 30 --limit 10 --limit-maximum 10"
+        " --limit-flip .99 --json -o " +
+        path("a.library");
+    for (const char* spec : specs) learned += std::string(" '") + spec + "'";
+    runProgram(learned);
+    const json list = json::parse(runProgram("library list " + path("a.library") + " --json"));
+    ASSERT_EQ(list["materials"].size(), std::size(specs));
+    for (const json& one : list["materials"]) {
+        const json encoded = json::parse(runProgram("library encode " + path("a.library") + " '" +
+                                                    one["source"].get<std::string>() +
+                                                    "' --json --force -o " + path("b.library")));
+        const double drawn = encoded["picture"]["flip"]["mean"];
+        EXPECT_NEAR(one["error"]["flip"], drawn, 0.06 * drawn) << one["name"];
+    }
 }
 
 TEST_F(LibraryMaps, BadInputEndsInOneLineWithoutAFile) {

@@ -298,7 +298,7 @@ double unseenFlipOf(const LogSpace& space, const Basis& basis, const MaterialSto
         const LogMaterial material = measured.material();
         const LogBrdf before(material, measured.name),
             after(decode(basis, encoder.encode(material, basis.size())), measured.name);
-        flips[n] = measured.error.flip + pictureError(before, after).flip.mean;
+        flips[n] = std::hypot(measured.error.flip, pictureError(before, after).flip.mean);
     });
     double sum = 0;
     for (const double one : flips) sum += one;

@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace hshfit::material_library {
 namespace {
@@ -29,7 +30,7 @@ FormError sumOf(const FormError& a, const FormError& b) {
             a.relativeL2 + b.relativeL2,
             a.maximum + b.maximum,
             a.largest,
-            a.flip + b.flip};
+            std::hypot(a.flip, b.flip)};
 }
 
 /// The material rounded to single precision, as files keep it.

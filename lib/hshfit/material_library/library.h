@@ -34,7 +34,8 @@ struct Material {
     std::size_t bytes = 0;                 ///< of its numbers
     std::string fallback = {};             ///< why it is not coded; empty: it is
     /// A material that was learned has the sum of the errors of the projection onto logTerms() and
-    /// of the rounding to the basis, which is at least the distance from the source.
+    /// of the rounding to the basis, which is at least the distance from the source; of FLIP the
+    /// root of the sum of their squares, as of errors that are independent.
     FormError error = {};
 };
 
