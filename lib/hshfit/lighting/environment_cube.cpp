@@ -4,6 +4,7 @@
 #include <hshfit/light/light_nodes.h>
 #include <hshfit/light/picture_light.h>
 #include <hshfit/light/sky.h>
+#include <hshfit/lighting/internal/light_pyramid.h>
 
 #include <tbb/parallel_for.h>
 
@@ -13,19 +14,6 @@
 
 namespace hshfit::lighting {
 namespace {
-
-struct CubePoint {
-    std::size_t face;
-    double a, b;  ///< in [-1, 1]
-};
-
-CubePoint cubePoint(const Direction& d) {
-    const double x = std::abs(d.x), y = std::abs(d.y), z = std::abs(d.z);
-    if (x >= y && x >= z)
-        return d.x > 0 ? CubePoint{0, -d.z / x, -d.y / x} : CubePoint{1, d.z / x, -d.y / x};
-    if (y >= z) return d.y > 0 ? CubePoint{2, d.x / y, d.z / y} : CubePoint{3, d.x / y, -d.z / y};
-    return d.z > 0 ? CubePoint{4, d.x / z, -d.y / z} : CubePoint{5, -d.x / z, -d.y / z};
-}
 
 double centre(double k, std::size_t face) {
     return (2 * k + 1) / static_cast<double>(face) - 1;
@@ -66,140 +54,6 @@ Rgb bilinear(const EnvironmentCube::Level& level, const CubePoint& point) {
     }
     return sum;
 }
-
-/// A kernel, and the chord beyond which it has little of its integral, so that cells may grow there
-/// in size over distance.
-struct PyramidKernel {
-    const LobeKernel::Scaled& kernel;
-    double core = 2;
-
-    /// The factor by which the square of size over distance may be larger, for the square of a
-    /// chord.
-    double growth(double squared) const { return std::clamp(squared / (core * core), 1.0, 16.0); }
-};
-
-/// Light as a pyramid over the cells of a cube's faces. Far from an axis a kernel about it varies
-/// slowly, so that a cell is one node at the middle of its flux if it is small beside its distance.
-class LightPyramid {
-public:
-    /// `width`: cells along a face in the finest level. Nodes that are many more than these cells
-    /// are not kept: cells are an eighth of a kernel's width, so that what is lost is of the order
-    /// of a hundredth of its curvature.
-    LightPyramid(const LightNodes& nodes, std::size_t width) {
-        const std::size_t cells = 6 * width * width;
-        std::vector<std::size_t> cellOf(nodes.count());
-        std::vector<Cell> finest(cells);
-        for (std::size_t k = 0; k < nodes.count(); ++k) {
-            const Direction d{nodes.x[k], nodes.y[k], nodes.z[k]};
-            const CubePoint point = cubePoint(d);
-            const auto place = [&](double a) {
-                return std::min(static_cast<std::size_t>((a + 1) / 2 * static_cast<double>(width)),
-                                width - 1);
-            };
-            cellOf[k] = (point.face * width + place(point.b)) * width + place(point.a);
-            finest[cellOf[k]].add(d, {nodes.flux[0][k], nodes.flux[1][k], nodes.flux[2][k]});
-        }
-        if (nodes.count() <= 2 * cells) keep(nodes, cellOf, cells);
-        levels_.push_back({width, std::move(finest)});
-        while (levels_.back().width > 1) {
-            const Level& below = levels_.back();
-            Level level{(below.width + 1) / 2, {}};
-            level.cells.resize(6 * level.width * level.width);
-            for (std::size_t k = 0; k < below.cells.size(); ++k) {
-                const std::size_t column = k % below.width, row = k / below.width % below.width,
-                                  face = k / (below.width * below.width);
-                level.cells[(face * level.width + row / 2) * level.width + column / 2].add(
-                    below.cells[k]);
-            }
-            levels_.push_back(std::move(level));
-        }
-        for (Level& level : levels_)
-            for (Cell& cell : level.cells) cell.centre();
-    }
-
-    /// The sum of flux times kernel(cosine) about an axis.
-    Rgb sum(const Direction& axis, const PyramidKernel& kernel) const {
-        Rgb sum{};
-        for (std::size_t face = 0; face < 6; ++face)
-            add(axis, kernel, levels_.size() - 1, face, 0, 0, sum);
-        return sum;
-    }
-
-private:
-    /// The size of a cell over its distance from the axis, at which it is one node.
-    static constexpr double slender = 1.0 / 7;
-
-    struct Cell {
-        Direction sum{0, 0, 0};  ///< of |flux| times direction; after `centre` the direction
-        Rgb flux{};
-        bool any = false;
-
-        void add(const Direction& d, const Rgb& f) {
-            const double size = std::abs(f[0]) + std::abs(f[1]) + std::abs(f[2]);
-            add({.sum = {size * d.x, size * d.y, size * d.z}, .flux = f});
-        }
-        void add(const Cell& other) {
-            sum.x += other.sum.x, sum.y += other.sum.y, sum.z += other.sum.z;
-            for (std::size_t c = 0; c < 3; ++c) flux[c] += other.flux[c];
-        }
-        void centre() {
-            const double length = std::sqrt(dot(sum, sum));
-            any = length > 0;
-            if (any) sum = {sum.x / length, sum.y / length, sum.z / length};
-        }
-    };
-    struct Level {
-        std::size_t width = 0;
-        std::vector<Cell> cells;  ///< [face][row][column]
-    };
-
-    void keep(const LightNodes& nodes, const std::vector<std::size_t>& cellOf, std::size_t cells) {
-        first_.assign(cells + 1, 0);
-        for (const std::size_t cell : cellOf) ++first_[cell + 1];
-        for (std::size_t k = 0; k < cells; ++k) first_[k + 1] += first_[k];
-        nodes_.resize(nodes.count());
-        std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-        for (std::size_t k = 0; k < nodes.count(); ++k)
-            nodes_[next[cellOf[k]]++] = {{nodes.x[k], nodes.y[k], nodes.z[k]},
-                                         {nodes.flux[0][k], nodes.flux[1][k], nodes.flux[2][k]},
-                                         true};
-    }
-
-    static void addNode(const Direction& axis, const PyramidKernel& kernel, const Cell& node,
-                        Rgb& sum) {
-        const double weight =
-            kernel.kernel.at(axis.x * node.sum.x + axis.y * node.sum.y + axis.z * node.sum.z);
-        for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * node.flux[c];
-    }
-
-    void add(const Direction& axis, const PyramidKernel& kernel, std::size_t level,
-             std::size_t face, std::size_t row, std::size_t column, Rgb& sum) const {
-        const Level& own = levels_[level];
-        const std::size_t place = (face * own.width + row) * own.width + column;
-        const Cell& cell = own.cells[place];
-        if (!cell.any) return;
-        const double size = 2 / static_cast<double>(own.width);
-        // The square of the chord.
-        const double squared =
-            2 - 2 * (axis.x * cell.sum.x + axis.y * cell.sum.y + axis.z * cell.sum.z);
-        if (size * size <= slender * slender * squared * kernel.growth(squared))
-            return addNode(axis, kernel, cell, sum);
-        if (level == 0) {
-            if (first_.empty()) return addNode(axis, kernel, cell, sum);
-            for (std::size_t k = first_[place]; k < first_[place + 1]; ++k)
-                addNode(axis, kernel, nodes_[k], sum);
-            return;
-        }
-        const std::size_t width = levels_[level - 1].width;
-        for (std::size_t j = 2 * row; j < std::min(width, 2 * row + 2); ++j)
-            for (std::size_t i = 2 * column; i < std::min(width, 2 * column + 2); ++i)
-                add(axis, kernel, level - 1, face, j, i, sum);
-    }
-
-    std::vector<Level> levels_;  ///< the finest first
-    std::vector<Cell> nodes_;    ///< by cells of the finest level
-    std::vector<std::size_t> first_;
-};
 
 }  // namespace
 
@@ -256,17 +110,31 @@ void overTexels(std::size_t face, const At& at) {
     });
 }
 
+/// Blocks of texels, neighbours enough to be walked together.
 EnvironmentCube::Level convolved(const std::vector<LightPyramid>& pyramids, std::size_t face,
                                  const PyramidKernel& kernel) {
     EnvironmentCube::Level level{.face = face, .rgb = std::vector<float>(18 * face * face)};
-    overTexels(face, [&](std::size_t place, std::size_t side, double column, double row) {
-        const Direction d = unitAt(side, centre(column, face), centre(row, face));
-        Rgb sum{};
-        for (const LightPyramid& part : pyramids) {
-            const Rgb own = part.sum(d, kernel);
-            for (std::size_t c = 0; c < 3; ++c) sum[c] += own[c];
+    constexpr std::size_t wide = 4, high = LightPyramid::axesAtOnce / wide;
+    const std::size_t blocks = (face + high - 1) / high;
+    tbb::parallel_for(std::size_t{0}, 6 * blocks, [&](std::size_t line) {
+        const std::size_t side = line / blocks, row = high * (line % blocks);
+        for (std::size_t column = 0; column < face; column += wide) {
+            LightPyramid::Axes axes{};
+            LightPyramid::Sums sums{};
+            std::array<std::size_t, LightPyramid::axesAtOnce> places{};
+            for (std::size_t k = 0; k < axes.size(); ++k) {
+                // Beyond the face's edge its last texel is taken again.
+                const std::size_t i = std::min(column + k % wide, face - 1),
+                                  j = std::min(row + k / wide, face - 1);
+                axes[k] = unitAt(side, centre(static_cast<double>(i), face),
+                                 centre(static_cast<double>(j), face));
+                places[k] = (side * face + j) * face + i;
+            }
+            for (const LightPyramid& part : pyramids) part.add(axes, kernel, sums);
+            for (std::size_t k = 0; k < axes.size(); ++k)
+                for (std::size_t c = 0; c < 3; ++c)
+                    level.rgb[3 * places[k] + c] = static_cast<float>(sums[k][c]);
         }
-        for (std::size_t c = 0; c < 3; ++c) level.rgb[3 * place + c] = static_cast<float>(sum[c]);
     });
     return level;
 }
@@ -305,7 +173,7 @@ EnvironmentCube::Level convolve(std::span<const Light> lights, std::size_t face,
                                 const LobeKernel::Scaled& kernel) {
     std::vector<LightPyramid> pyramids;
     for (const Light& light : lights) pyramids.emplace_back(nodesOf(light, {}, order, 0), 2 * face);
-    return convolved(pyramids, face, {kernel});
+    return convolved(pyramids, face, PyramidKernel(kernel));
 }
 
 EnvironmentCube::Level convolve(const EnvironmentCube::Level& light, std::size_t face,
@@ -321,7 +189,7 @@ EnvironmentCube::Level convolve(const EnvironmentCube::Level& light, std::size_t
     }
     std::vector<LightPyramid> pyramids;
     pyramids.emplace_back(nodes, 2 * face);
-    return convolved(pyramids, face, {kernel, core});
+    return convolved(pyramids, face, PyramidKernel(kernel, core));
 }
 
 EnvironmentCube::Level rasterised(std::span<const Light> lights, std::size_t face) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace hshfit::lighting {
@@ -45,6 +46,8 @@ public:
             const double share = place - static_cast<double>(k);
             return table_[k] + share * (table_[k + 1] - table_[k]);
         }
+        /// Values at sin(alpha / 2) = k / (size - 1), between which `at` is linear.
+        std::span<const float> table() const { return table_; }
 
     private:
         friend class LobeKernel;
