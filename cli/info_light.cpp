@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace hshfit::cli {
@@ -168,6 +169,8 @@ Json lightAnswer(const std::string& spec, const jobs::LightInfo& info) {
                                 {"brightest_share", health.brightestShare},
                                 {"dynamic_range", finiteOrNull(health.dynamicRange)},
                                 {"black_share", health.blackShare},
+                                {"negative_share", health.negativeShare},
+                                {"least_negative", health.leastNegative},
                                 {"clipped_by_half", health.clippedByHalf},
                                 {"invalid",
                                  {{"negative", health.invalid.negative},
@@ -193,12 +196,18 @@ std::string lightText(const Json& document) {
     if (health["black_share"] > 0)
         out += factLine("black", fmt::format("{:.3g} % of the sphere",
                                              100 * health["black_share"].get<double>()));
+    if (health["negative_share"] > 0)
+        out += factLine("below 0", fmt::format("{:.3g} % of the sphere, down to {:.3g}",
+                                               100 * health["negative_share"].get<double>(),
+                                               health["least_negative"].get<double>()));
     out += factLine("fits a 16-bit float", health["clipped_by_half"] ? "no: above 65504" : "yes");
+    const Json& lights = document["lights"];
     const Json& invalid = health["invalid"];
-    out += factLine(
-        "pixels below 0, NaN, infinite",
-        fmt::format("{}, {}, {}", invalid["negative"].get<std::size_t>(),
-                    invalid["nan"].get<std::size_t>(), invalid["infinite"].get<std::size_t>()));
+    if (std::ranges::any_of(lights, [](const Json& light) { return light["kind"] == "picture"; }))
+        out += factLine(
+            "pixels below 0, NaN, infinite",
+            fmt::format("{}, {}, {}", invalid["negative"].get<std::size_t>(),
+                        invalid["nan"].get<std::size_t>(), invalid["infinite"].get<std::size_t>()));
     for (const Json& warning : document.value("warnings", Json::array()))
         out += factLine("WARNING", warning.get<std::string>());
     return out;

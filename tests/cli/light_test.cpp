@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -80,6 +81,31 @@ TEST_F(Lights, MixedAnalyticLightsHaveAHealthReport) {
     for (const char* words : {"light:", "mean radiance", "peak towards", "fits a 16-bit float"}) {
         EXPECT_NE(text.find(words), std::string::npos) << words;
     }
+}
+
+/// Ten bands of a beam of irradiance E are E / (4 pi) times the sum of (2 l + 1) P_l of the cosine
+/// towards it, which is below 0 in about half of the sphere.
+TEST_F(Lights, RingingOfCoefficientsIsBelow0AndNotBlack) {
+    ASSERT_EQ(run("light directional:elevation=40,irradiance=3 -o " + path("beam.json")).code, 0);
+    constexpr int steps = 200000;
+    double share = 0, least = 0;
+    for (int k = 0; k < steps; ++k) {
+        const double x = -1 + 2 * (k + 0.5) / steps;
+        double sum = 0;
+        for (unsigned l = 0; l < 10; ++l) sum += (2 * l + 1) * std::legendre(l, x);
+        least = std::min(least, 3 / (4 * pi) * sum);
+        if (sum < 0) share += 1.0 / steps;
+    }
+    const Json health = info(path("beam.json"))["light_health"];
+    EXPECT_NEAR(health["negative_share"], share, 1e-3);
+    EXPECT_NEAR(health["least_negative"], least, 1e-3 * -least);
+    EXPECT_EQ(health["black_share"], 0);
+    EXPECT_NEAR(health["mean"][0], 3 / (4 * pi), 1e-4);
+
+    const std::string text = run("info " + path("beam.json")).out;
+    EXPECT_NE(text.find("% of the sphere, down to -"), std::string::npos) << text;
+    EXPECT_EQ(text.find("black"), std::string::npos) << text;
+    EXPECT_EQ(text.find("pixels below 0"), std::string::npos) << text;
 }
 
 TEST_F(Lights, PicturesHaveTheHealthOfTheirPixels) {

@@ -86,16 +86,20 @@ public:
     /// Whether the pixel is the brightest so far.
     bool add(const Rgb& rgb, double solidAngle) {
         if (!(solidAngle > 0)) return false;
-        const double sum = sumOf(rgb);
+        const double sum = sumOf(rgb), least = *std::ranges::min_element(rgb);
         for (std::size_t c = 0; c < 3; ++c) {
             flux_[c] += rgb[c] * solidAngle;
             largest_ = std::max(largest_, rgb[c]);
+        }
+        if (least < 0) {
+            negative_ += solidAngle;
+            health_.leastNegative = std::min(health_.leastNegative, least);
         }
         solidAngle_ += solidAngle;
         classes_.add(sum, solidAngle);
         if (sum > 0) {
             least_ = std::min(least_, sum);
-        } else {
+        } else if (!(least < 0)) {
             black_ += solidAngle;
         }
         if (!(sum > sumOf(health_.peak))) return false;
@@ -143,6 +147,7 @@ public:
         health_.brightestShare = total > 0 ? classes_.fluxOfBrightest(brightestPart) / total : 0;
         health_.dynamicRange = total > 0 ? sumOf(health_.peak) / least_ : 0;
         health_.blackShare = solidAngle_ > 0 ? black_ / solidAngle_ : 0;
+        health_.negativeShare = solidAngle_ > 0 ? negative_ / solidAngle_ : 0;
         health_.aboveHalf = largest_ / largestHalf;
         health_.clippedByHalf = largest_ > largestHalf;
         return health_;
@@ -152,7 +157,7 @@ private:
     LightHealth health_;
     Classes classes_;
     Rgb flux_{};
-    double solidAngle_ = 0, black_ = 0, least_ = infinity, largest_ = 0;
+    double solidAngle_ = 0, black_ = 0, negative_ = 0, least_ = infinity, largest_ = 0;
 };
 
 /// A light that the pixels of the grid would miss.
