@@ -73,14 +73,18 @@ std::unique_ptr<ModelColumns> columns(const ColumnRequest& request) {
     return HWY_DYNAMIC_DISPATCH(ashikhminShirleyColumns)(request);
 }
 
+/// The diffuse term is linear in Rd (1 - Rs): in one of them for each value of the other.
+bool linearBesideStatedRd(const Parameters& stated) {
+    return linearUnderStatedScale(stated) && stated.given("Rd");
+}
+
 Parameter reflectance(std::string_view name, std::string_view help, double fallback) {
     return {.name = name,
             .help = help,
             .kind = Parameter::Kind::colour,
             .fallback = fallback,
             .min = 0,
-            .max = 1,
-            .linear = linearUnderStatedScale};
+            .max = 1};
 }
 
 /// Half vectors of section 4 of the paper. The exponents are 1 higher, for the projected area.
@@ -96,9 +100,13 @@ const Model& ashikhminShirleyModel() {
         .name = "ashikhmin-shirley",
         .help = "anisotropic Phong lobe with Fresnel reflectance over a coupled diffuse term",
         .source = "Ashikhmin & Shirley 2000, 10.1080/10867651.2000.10487522",
-        .parameters = {fitted(reflectance("Rs", "specular reflectance at normal incidence", 1),
-                              {{.low = 0.01, .high = 0.9, .unless = "ior"}}),
-                       reflectance("Rd", "diffuse reflectance of the substrate", 0),
+        .parameters = {linearIf(
+                           fitted(reflectance("Rs", "specular reflectance at normal incidence", 1),
+                                  {{.low = 0.01, .high = 0.9, .unless = "ior"}}),
+                           linearBesideStatedRd),
+                       linearIf(fitted(reflectance("Rd", "diffuse reflectance of the substrate", 0),
+                                       {{.low = 0, .high = 1}}),
+                                alwaysLinear),
                        exponentParameter("nu", "exponent along x", {.low = 1, .high = 1e5}),
                        exponentParameter("nv", "exponent along y",
                                          {.low = 1, .high = 1e5, .follows = "nu"}),

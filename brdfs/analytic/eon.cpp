@@ -75,6 +75,11 @@ std::unique_ptr<ModelColumns> openpbrColumnsOf(const ColumnRequest& request) {
     return HWY_DYNAMIC_DISPATCH(openpbrDiffuseColumns)(request);
 }
 
+/// Light that is reflected several times is not linear in the albedo.
+bool neverLinear(const Parameters&) {
+    return false;
+}
+
 Parameter unitParameter(std::string_view name, std::string_view help, double fallback) {
     return {.name = name, .help = help, .fallback = fallback, .min = 0, .max = 1};
 }
@@ -86,7 +91,8 @@ const Model& eonModel() {
         .name = "eon",
         .help = "rough diffuse surface that loses no energy (energy-preserving Oren-Nayar)",
         .source = "Portsmouth, Kutz & Hill 2025, JCGT 14(1), arXiv 2410.18026",
-        .parameters = {linearIf(fitted(kdParameter(1, 1), {{.low = 0.05, .high = 0.9}}), nullptr),
+        .parameters = {linearIf(fitted(kdParameter(1, 1), {{.low = 0.05, .high = 0.9}}),
+                                neverLinear),
                        {.name = "roughness",
                         .help = "0 is Lambert",
                         .min = 0,
@@ -114,7 +120,8 @@ const Model& openpbrDiffuseModel() {
                         .fallback = 0.8,
                         .min = 0,
                         .max = 1,
-                        .fit = {{.low = 0.05, .high = 0.9}}},
+                        .fit = {{.low = 0.05, .high = 0.9}},
+                        .linear = neverLinear},
                        fitted(unitParameter("base_diffuse_roughness", "0 is Lambert", 0),
                               {{.low = 0.1, .high = 0.9}})},
         .laws = {.nonNegative = true,

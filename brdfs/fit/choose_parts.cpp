@@ -197,8 +197,9 @@ private:
     std::vector<double> startOf(const FitOptions& own, const TriedParts& before) const {
         const std::vector<double> known = shapesOf(before.result, before.options, samples_);
         if (known.empty()) return {};
-        const ParametricSum sum(own.model, samples_.isotropic),
-            last(before.options.model, samples_.isotropic);
+        const bool coloured = before.result.point.channels.front().coloured;
+        const ParametricSum sum(own.model, samples_.isotropic, 0, coloured),
+            last(before.options.model, samples_.isotropic, 0, coloured);
         std::vector<double> from;
         for (const ShapeParameter& shape : sum.shapes()) {
             const auto same =

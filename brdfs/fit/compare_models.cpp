@@ -145,7 +145,9 @@ std::vector<double> shapesOf(const FitResult& fit, const FitOptions& options,
     if (!options.dispersion.empty() || namesMetals(options.model)) return {};
     const std::vector<double>& values = fit.point.channels.front().values;
     const auto count = static_cast<std::ptrdiff_t>(
-        ParametricSum(options.model, samples.isotropic).shapes().size());
+        ParametricSum(options.model, samples.isotropic, 0, fit.point.channels.front().coloured)
+            .shapes()
+            .size());
     return {values.begin(), values.begin() + count};
 }
 

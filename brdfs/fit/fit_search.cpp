@@ -199,7 +199,7 @@ std::vector<Minimum> coarseMinima(const FitProblem& problem, bool linear,
     const bool known = !options.from.empty() && std::ranges::none_of(options.from, isNan);
     const bool one = shapes == 0 || known;
     // The loss goes up and down with the thickness of a film.
-    const std::size_t more = problem.sum().channelwise() && options.from.empty() ? 4 : 1;
+    const std::size_t more = problem.sum().hasColouredModel() && options.from.empty() ? 4 : 1;
     const std::size_t starts = one ? 1 : more * static_cast<std::size_t>(options.starts);
     std::vector<std::vector<double>> places =
         startsOf(problem.sum(), one ? 1 : 4 * starts, options.seed);

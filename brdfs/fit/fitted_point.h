@@ -20,6 +20,7 @@ struct FittedChannel {
     /// Derivatives of each value by the coefficients of the fit, those that are not 0.
     std::vector<std::vector<Slope>> slopes;
     std::size_t channel = 0;  ///< of the fit
+    bool coloured = false;    ///< of the ParametricSum
 };
 
 /// The coefficients of a fit are its parameters, or else the coefficients of laws over wavelength

@@ -39,6 +39,20 @@ bool isIndex(const Model& model, const Parameter& parameter) {
     return !model.parts.empty() && parameter.min == 1;
 }
 
+/// Whether it adds a diffuse part that its model may do without: other terms of a sum have one.
+bool addsDiffuse(const Parameter& parameter) {
+    return (parameter.name == "kd" || parameter.name == "Rd") && parameter.fallback == 0.0;
+}
+
+/// Whether a colour in which f is not linear has to take a value for each channel. Its row says in
+/// which cases f is linear in it. A reflectance under a free ks is one number: ks has the channels.
+bool isAlbedo(const Model& model, const Parameter& parameter, const Parameters& values) {
+    const bool scaled =
+        std::ranges::find(model.parameters, "ks", &Parameter::name) != model.parameters.end();
+    return parameter.kind == Parameter::Kind::colour && parameter.linear &&
+           !parameter.linear(values) && !(scaled && !values.given("ks"));
+}
+
 /// Angles that turn a lobe are free within two whole turns, and start within the half turn after
 /// which the lobe is the same.
 double periodOf(const Parameter& parameter, const FitRange& range) {
@@ -50,11 +64,12 @@ double periodOf(const Parameter& parameter, const FitRange& range) {
 
 std::vector<FreeParameter> freeParameters(const Model& model, const Parameters& stated,
                                           bool isotropic, bool inSum) {
-    const Parameters values = withDefaults(model, stated);
+    Parameters values = withDefaults(model, stated);
+    for (const Parameter& parameter : model.parameters)
+        if (inSum && addsDiffuse(parameter)) values.stated.emplace(parameter.name);
     std::vector<FreeParameter> free;
     for (const Parameter& parameter : model.parameters) {
-        if (stated.given(parameter.name)) continue;
-        if (inSum && parameter.name == "kd" && parameter.fallback == 0.0) continue;
+        if (stated.given(parameter.name) || (inSum && addsDiffuse(parameter))) continue;
         const FitRange* range = rangeOf(parameter, model, stated, isotropic);
         if (!range || range->low == range->high) continue;
         if (isotropic && !range->follows.empty()) {
@@ -75,6 +90,7 @@ std::vector<FreeParameter> freeParameters(const Model& model, const Parameters& 
                         .startHigh = range->high,
                         .colour = parameter.kind == Parameter::Kind::colour,
                         .linear = parameter.linear && parameter.linear(values),
+                        .albedo = isAlbedo(model, parameter, values),
                         .period = periodOf(parameter, *range)});
     }
     return free;

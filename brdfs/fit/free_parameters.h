@@ -17,7 +17,10 @@ struct FreeParameter {
     double startLow = 0, startHigh = 0;
     bool colour = false;  ///< may have a value per channel
     bool linear = false;  ///< f is linear in it (Parameter::linear)
-    double period = 0;    ///< values that differ by it have the same f; 0: none do
+    /// A colour that scales f, such as an albedo, in which f is not linear, and no free ks scales
+    /// the same lobe: coloured data give it a value for each channel.
+    bool albedo = false;
+    double period = 0;  ///< values that differ by it have the same f; 0: none do
 
     /// The value of the same f in [0, period).
     double reduced(double value) const {
@@ -26,8 +29,8 @@ struct FreeParameter {
 };
 
 /// The parameters of `model` that are free to fit, given those that are stated: the ones whose row
-/// has a FitRange that applies. Stated parameters are not free. In a sum of models, kd with a
-/// default of 0 stays 0.
+/// has a FitRange that applies. Stated parameters are not free. In a sum of models, kd and Rd with
+/// a default of 0 stay 0.
 std::vector<FreeParameter> freeParameters(const Model& model, const Parameters& stated,
                                           bool isotropic, bool inSum);
 

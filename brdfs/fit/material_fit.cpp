@@ -96,7 +96,7 @@ void describe(const FitProblem& problem, const std::vector<double>& x, const Fit
             parameter.name = sum.linears()[k].name;
             parameter.channel = names.size() > 1 ? names[c] : "";
             parameter.value = at;
-            parameter.linear = true;
+            parameter.linear = sum.linears()[k].exact;
             slope.push_back(1);
             part.linear.push_back(at);
         }
@@ -255,8 +255,11 @@ FittedPoint pointOf(const std::vector<Part>& parts, const ParametricSum& sum,
             for (std::size_t j = 0; j < count; ++j)
                 point.covariance[(first + i) * n + first + j] = part.covariance[i * count + j];
         for (std::size_t c = 0; c < channels; ++c) {
-            FittedChannel channel{
-                sum.spec(), valuesOfChannel(all, shapes, channels, c), {}, p * channels + c};
+            FittedChannel channel{sum.spec(),
+                                  valuesOfChannel(all, shapes, channels, c),
+                                  {},
+                                  p * channels + c,
+                                  sum.coloured()};
             for (std::size_t i = 0; i < channel.values.size(); ++i)
                 channel.slopes.push_back(
                     {{first + (i < shapes ? i : shapes + (i - shapes) * channels + c), 1}});
@@ -296,8 +299,9 @@ void addBudget(const std::vector<Part>& parts, const FitOptions& options, FitRes
 
 }  // namespace
 
-FitResult fitMaterial(const FitSamples& samples, const FitOptions& options) {
-    const ParametricSum sum(options.model, samples.isotropic);
+FitResult fitMaterial(const FitSamples& samples, const FitOptions& options, bool coloured) {
+    const ParametricSum sum(options.model, samples.isotropic, 0,
+                            coloured && samples.channels.count() > 1);
     if (!options.from.empty() && options.from.size() != sum.shapes().size())
         throw UsageError(fmt::format("'{}' has {} shapes, and {} values to start from were given",
                                      sum.spec(), sum.shapes().size(), options.from.size()));

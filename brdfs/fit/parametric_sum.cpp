@@ -51,6 +51,26 @@ bool isZero(const Brdf& brdf) {
     return true;
 }
 
+/// Whether f in each channel depends on the value of `key` in that channel alone: a model with
+/// tints mixes channels.
+bool isSeparable(const Model& model, const Parameters& stated,
+                 const std::vector<FreeParameter>& free, const std::string& key) {
+    const std::vector<double> shares = {0.2, 0.5, 0.8};
+    const auto at = [&](const std::vector<double>& values) {
+        Parameters all = withDefaults(model, stated);
+        for (const FreeParameter& other : free)
+            for (const std::string& own : other.keys)
+                all.set(own, own == key ? values : std::vector{other.startLow});
+        const auto brdf = model.make(all);
+        return evaluate(*brdf, directionFromAngles(0.7, 2.5), directionFromAngles(0.6, 0.3));
+    };
+    const std::vector<double> f = at(shares);
+    if (f.size() != shares.size()) return false;
+    for (std::size_t c = 0; c < shares.size(); ++c)
+        if (std::abs(at({shares[c]}).front() - f[c]) > 1e-12 * std::abs(f[c])) return false;
+    return true;
+}
+
 bool colours(const Model& model, const Parameters& stated) {
     return model.channelwise && model.channelwise(withDefaults(model, stated));
 }
@@ -104,8 +124,9 @@ void Columns::eval(const Direction& wo, DirectionBatch wi, double* out) const {
     }
 }
 
-ParametricSum::ParametricSum(std::string_view spec, bool isotropic, std::size_t channel)
-    : channel_(channel) {
+ParametricSum::ParametricSum(std::string_view spec, bool isotropic, std::size_t channel,
+                             bool coloured)
+    : channel_(channel), coloured_(coloured) {
     const std::vector<std::string> parts = splitModels(spec);
     for (const std::string& part : parts) {
         const std::size_t colon = part.find(':');
@@ -121,19 +142,25 @@ ParametricSum::ParametricSum(std::string_view spec, bool isotropic, std::size_t 
                   .byFormula = model.columns != nullptr,
                   .channelwise = false};
         term.channelwise = colours(model, term.stated);
+        hasColouredModel_ = hasColouredModel_ || term.channelwise;
         checkGrey(model, term.stated);
-        for (const FreeParameter& free :
-             freeParameters(model, term.stated, isotropic, parts.size() > 1)) {
+        const std::vector<FreeParameter> all =
+            freeParameters(model, term.stated, isotropic, parts.size() > 1);
+        for (const FreeParameter& free : all) {
             const std::string& key = free.keys.front();
             const std::string name = parts.size() > 1 ? fmt::format("{}.{}", model.name, key) : key;
-            if (free.linear) {
+            const bool linearised = coloured && free.albedo && model.columns &&
+                                    isSeparable(model, term.stated, all, key);
+            if (free.linear || linearised) {
+                term.channelwise = term.channelwise || linearised;
                 term.linears.push_back(linears_.size());
                 term.linearKeys.push_back(key);
                 linears_.push_back({.term = terms_.size(),
                                     .name = name,
                                     .key = key,
                                     .min = free.min,
-                                    .max = free.max});
+                                    .max = free.max,
+                                    .exact = free.linear});
                 continue;
             }
             ShapeParameter shape{.term = terms_.size(), .name = name, .free = free};
@@ -177,6 +204,13 @@ std::unique_ptr<ModelColumns> ParametricSum::formulaColumns(std::size_t term,
     ColumnRequest request{.values = values, .linears = own.linearKeys};
     if (derivatives) request.shapes = own.shapeKeys;
     return own.model->columns(request);
+}
+
+std::vector<std::string> ParametricSum::sharedAlbedos() const {
+    std::vector<std::string> names;
+    for (const ShapeParameter& shape : shapes_)
+        if (shape.free.albedo) names.push_back(shape.name);
+    return names;
 }
 
 bool ParametricSum::channelwise() const {

@@ -29,12 +29,14 @@ struct ShapeParameter {
     double slope(double value) const { return free.logarithmic ? value + offset : 1; }
 };
 
-/// A free parameter that f is linear in, whatever the shape; one value per channel. min is 0.
+/// A free parameter with a value per channel: f is linear in it, whatever the shape, or, of a term
+/// with functions of its own in each channel, is linearised about its value. min is 0.
 struct LinearParameter {
     std::size_t term = 0;
     std::string name;
     std::string key;
     double min = 0, max = 0;
+    bool exact = true;  ///< f is linear in it
 };
 
 /// The shape-dependent functions of which f is a sum, for one set of shape values:
@@ -64,8 +66,11 @@ private:
 class ParametricSum {
 public:
     /// Throws UsageError as parsing does, or if nothing is free. `channel`: of R, G and B that the
-    /// first one of the samples is.
-    ParametricSum(std::string_view spec, bool isotropic, std::size_t channel = 0);
+    /// first one of the samples is. `coloured`: albedos have a value for each channel although f is
+    /// not linear in them (FreeParameter::albedo), if f in each channel depends on that value
+    /// alone.
+    ParametricSum(std::string_view spec, bool isotropic, std::size_t channel = 0,
+                  bool coloured = false);
 
     const std::string& spec() const { return spec_; }
     const std::vector<ShapeParameter>& shapes() const { return shapes_; }
@@ -80,9 +85,15 @@ public:
     /// derivatives by its shapes if asked for. Null: by differences of Brdf::eval.
     std::unique_ptr<ModelColumns> formulaColumns(std::size_t term, std::span<const double> shapes,
                                                  bool derivatives) const;
-    /// Whether a term has functions of its own in each channel (Model::channelwise).
+    /// Whether a term has functions of its own in each channel: by its model (Model::channelwise),
+    /// or because of an albedo in which f is not linear.
     bool channelwise(std::size_t term) const { return terms_[term].channelwise; }
     bool channelwise() const;
+    /// Whether a model has, whatever its colours.
+    bool hasColouredModel() const { return hasColouredModel_; }
+    bool coloured() const { return coloured_; }
+    /// Names of the albedos (FreeParameter::albedo) that are one number for all channels.
+    std::vector<std::string> sharedAlbedos() const;
     /// f of such a term in one channel of the samples, at values of all shapes and of that
     /// channel's linear parameters, with derivatives by its shapes if asked for, then by its linear
     /// parameters.
@@ -129,7 +140,9 @@ private:
     std::vector<ShapeParameter> shapes_;
     std::vector<LinearParameter> linears_;
     bool scalable_ = true;
+    bool hasColouredModel_ = false;
     std::size_t channel_ = 0;
+    bool coloured_ = false;
 };
 
 /// Whether a term of a specification has functions of its own in each channel.

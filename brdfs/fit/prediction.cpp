@@ -38,7 +38,7 @@ struct Gradients {
 };
 
 Gradients gradientsOf(const FittedChannel& channel, const FitSamples& samples) {
-    const ParametricSum sum(channel.model, samples.isotropic, channel.channel);
+    const ParametricSum sum(channel.model, samples.isotropic, channel.channel, channel.coloured);
     const FitProblem problem(samples, sum, Loss::Kind::l2);
     const WeightedRows rows = problem.weightedRows(pointOf(sum, channel.values));
     Gradients result;
@@ -128,8 +128,9 @@ void addBootstrapBands(const FitResult& fit, const FitSamples& samples, std::siz
     Prediction::Bootstrap& bands = *result.bootstrap;
     std::vector<std::vector<double>> f;
     for (std::size_t c = 0; c < result.channels; ++c) {
-        const ParametricSum sum(fit.point.channels[c].model, samples.isotropic,
-                                fit.point.channels[c].channel);
+        const FittedChannel& channel = fit.point.channels[c];
+        const ParametricSum sum(channel.model, samples.isotropic, channel.channel,
+                                channel.coloured);
         const FitProblem problem(samples, sum, Loss::Kind::l2);
         f.clear();
         for (const auto& draw : fit.point.draws)

@@ -4,6 +4,7 @@
 #include "certificate.h"
 #include "fit_bands.h"
 #include "fit_page.h"
+#include "grey_colours.h"
 
 #include <hshfit/brdf/transmission.h>
 #include <hshfit/error.h>
@@ -306,8 +307,13 @@ std::optional<Poor> judged(const Fitted& fitted, const Brdf& brdf, const brdfs::
                  .otherwise = adviceBeyondModels(brdf)};
     if (!options.loss.empty()) call.settings.push_back({"FitOptions::loss", options.loss});
     if (!options.sigma.empty()) call.settings.push_back({"FitOptions::sigma", options.sigma});
-    return judgeFit(fitted.picture, call,
-                    [&] { return triedFits(brdf, samples, options, how, seen, fitted); });
+    std::optional<Poor> poor = judgeFit(
+        fitted.picture, call, [&] { return triedFits(brdf, samples, options, how, seen, fitted); });
+    const std::string grey = greyColours(fitted.result, samples, how);
+    if (grey.empty()) return poor;
+    if (!poor) return Poor{grey, "a model in whose colours f is linear, such as lambert+ggx"};
+    poor->reason = grey + "; " + poor->reason;
+    return poor;
 }
 
 /// The residuals' file, complete but not yet under its name: none if no path is given.

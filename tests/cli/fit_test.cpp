@@ -65,6 +65,20 @@ TEST_F(Cli, FitsOfSamplesOverDecadesSeeAllOfThem) {
         << poor["poor"];
 }
 
+// The tint of disney is baseColor over its luminance, so that a channel depends on all colours.
+TEST_F(Cli, FitsOfColoursAreColouredOrSayWhichAlbedoIsOneNumber) {
+    const Answer own = run("fit eon:kd=.5/.3/.1,roughness=.6 --model eon --json");
+    ASSERT_EQ(own.code, 0) << own.err;
+    EXPECT_FALSE(Json::parse(own.out).contains("poor")) << own.out;
+    const Answer tinted =
+        run("fit disney:baseColor=.5/.3/.1,specularTint=.5,clearcoat=0 --model "
+            "disney:specularTint=.5,metallic=0,clearcoat=0,sheen=0,subsurface=0 --accept --json");
+    ASSERT_EQ(tinted.code, 0) << tinted.err;
+    EXPECT_TRUE(Json::parse(tinted.out)["poor"]["reason"].get<std::string>().starts_with(
+        "baseColor is one number for all channels: "))
+        << tinted.out;
+}
+
 TEST_F(Cli, FitEndsInTimeWithWhatItHas) {
     const std::string job = "fit ggx:alpha=.3,kd=.2 --model disney --seconds 0.01 ";
     expectError(job + "-o " + path("x.json"), 4, "stopped at the end of the time", 0);

@@ -51,7 +51,7 @@ FitResult searchMaterial(const FitSamples& samples, const FitOptions& options) {
     plain.uncertainty = {};
     plain.contributions.clear();
     plain.progress = {};
-    return fitMaterial(samples, plain);
+    return fitMaterial(samples, plain, false);
 }
 
 Minimum minimised(const InstrumentProblem& problem, const std::vector<double>& start,
