@@ -31,8 +31,8 @@ struct SpirvModule {
 };
 
 /// PREFIX_eval of pairs and, with a proposal, PREFIX_sample and PREFIX_pdf in modules of their own.
-/// The values are what the functions return in GLSL. Throws UsageError, as the shader's source does,
-/// and where the program was built without glslang.
+/// The values are what the functions return in GLSL. Throws UsageError, as the shader's source
+/// does, and where the program was built without glslang.
 std::vector<SpirvModule> spirvModules(const Payload& payload, const std::string& prefix,
                                       const std::optional<ProposalRecord>& proposal = {});
 std::vector<SpirvModule> spirvModules(const FormPayload& payload, const FormShaderOptions& options,
