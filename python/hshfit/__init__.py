@@ -16,9 +16,10 @@ from ._hshfit import (
     Basis, Brdf, Coefficients, Comparison, Curve, Curves, Error, Fit, FittedParameter, Form,
     InputError, Library, Light, NumericError, Outgoing, OutputError, Projection, Rotation,
     UsageError, __version__, catalog, choose, compare, convert, curves, describe, direction,
-    export, fit, function, gaussians, illuminate, import_coefficients, irradiance, light,
-    ltc, matrix, open, picture_error, plan, plot, project, project_all, rank_models, read,
-    render, sample, set_threads, stress, svbrdf, threads, tradeoff, transfer)
+    export, export_lighting, export_material, fit, function, gaussians, illuminate,
+    import_coefficients, irradiance, light, ltc, matrix, open, picture_error, plan, plot,
+    project, project_all, rank_models, read, render, sample, set_threads, stress, svbrdf,
+    threads, tradeoff, transfer)
 from . import _arguments, _html
 
 _html.attach()
@@ -27,7 +28,8 @@ __all__ = [
     "Basis", "Brdf", "Coefficients", "Comparison", "Curve", "Curves", "Error", "Fit",
     "FittedParameter", "Form", "InputError", "Library", "Light", "NumericError", "Outgoing",
     "OutputError", "Projection", "Rotation", "UsageError", "catalog", "choose", "compare",
-    "convert", "curves", "describe", "direction", "export", "fit", "function", "gaussians",
+    "convert", "curves", "describe", "direction", "export", "export_lighting",
+    "export_material", "fit", "function", "gaussians",
     "illuminate", "import_coefficients", "irradiance", "light", "ltc", "matrix", "open",
     "picture_error", "plan", "plot", "project", "project_all", "rank_models", "read",
     "render", "sample", "set_threads", "stress", "svbrdf", "threads", "tradeoff", "transfer"]

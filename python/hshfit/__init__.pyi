@@ -622,6 +622,37 @@ def export(
     force: bool = ...,
     progress: Progress = ...,
 ) -> Row: ...
+def export_material(
+    spec: Path,
+    folder: Path,
+    *,
+    targets: Names = ...,
+    name: str = ...,
+    source: Optional[Path] = ...,
+    force: bool = ...,
+    mesh: Optional[Path] = ...,
+    extensions: str = ...,
+    progress: Progress = ...,
+) -> Row: ...
+def export_lighting(
+    spec: Path,
+    folder: Path,
+    *,
+    targets: Names = ...,
+    name: str = ...,
+    number: str = ...,
+    environment_order: int = ...,
+    prefix: str = ...,
+    source: Optional[Path] = ...,
+    measure_error: bool = ...,
+    lights: Lights = ...,
+    force: bool = ...,
+    lighting: Names = ...,
+    engine: str = ...,
+    lobes: int = ...,
+    seconds: Optional[float] = ...,
+    progress: Progress = ...,
+) -> Row: ...
 def import_coefficients(
     input: Path,
     output: Path,

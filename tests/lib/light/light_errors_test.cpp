@@ -31,15 +31,16 @@ double relativeDifference(const std::vector<double>& a, const std::vector<double
     return std::sqrt(missed / all);
 }
 
-/// The reference has nodes four times as close together.
+/// The reference has nodes at more levels. A stated error is the difference of two levels.
 TEST(LightErrors, HoldInEveryBasisOfTheHemisphere) {
     const std::vector<Light> sky = parseLights("sky:type=12,elevation=20,radiance=1").lights;
     for (const bases::Entry& info : bases::catalog()) {
-        for (const int order : {8, 14, 20}) {
+        for (const int order : {3, 8, 14, 20}) {
+            if (order > info.maxOrder) continue;
             const LightCoefficients fine = above(sky, info.name, order, 1e-9);
             const LightCoefficients coarse = above(sky, info.name, order, 1e-1);
             EXPECT_LE(relativeDifference(coarse.values, fine.values),
-                      2 * (coarse.error + fine.error))
+                      3 * (coarse.error + fine.error))
                 << info.name << " " << order;
         }
     }
