@@ -72,7 +72,9 @@ public:
     template <class Element>
     void operator()(std::vector<Element>* value) const {
         CLI::Option* option = command_.add_option(namesOf(row_), *value);
-        if (!isPositional(row_)) option->allow_extra_args(false);
+        // Specifications follow one another as words.
+        if (!isPositional(row_) && row_.values.syntax != jobs::Syntax::sum)
+            option->allow_extra_args(false);
         if (row_.values.syntax == jobs::Syntax::list) option->delimiter(',');
         checkRange<Element>(*option);
         if (!value->empty() && !saysDefault())
