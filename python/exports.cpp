@@ -83,28 +83,36 @@ py::dict exported(const py::object& coefficients, const py::object& folder,
     return exportedDict(done);
 }
 
-py::object exportedMaterial(const py::object& spec, const py::object& folder,
-                            const py::kwargs& keywords) {
-    SharedOptions<jobs::MaterialExportOptions> options;
+/// The answer of `make`, which exports by options of its own with the shared ones.
+template <class Own, class Make>
+py::object exportedAs(const py::object& spec, const py::object& folder, const py::kwargs& keywords,
+                      const Make& make) {
+    SharedOptions<Own> options;
     const py::object progress = optionsFrom(keywords, optionsOf(options));
     const std::string from = pathOf(spec, "spec"), to = pathOf(folder, "folder");
-    jobs::ExportedMaterials done;
+    nlohmann::ordered_json answer;
     watched(progress, {}, [&](const jobs::Listener& listener) {
-        done = jobs::exportMaterials(from, to, withShared(options.shared, options.own), listener);
+        answer = make(from, to, withShared(options.shared, options.own), listener);
     });
-    return fromJson(jobs::materialsJson(done, to));
+    return fromJson(answer);
+}
+
+py::object exportedMaterial(const py::object& spec, const py::object& folder,
+                            const py::kwargs& keywords) {
+    return exportedAs<jobs::MaterialExportOptions>(
+        spec, folder, keywords,
+        [](const auto& from, const auto& to, const auto& options, const auto& listener) {
+            return jobs::materialsJson(jobs::exportMaterials(from, to, options, listener), to);
+        });
 }
 
 py::object exportedLighting(const py::object& spec, const py::object& folder,
                             const py::kwargs& keywords) {
-    SharedOptions<jobs::LightingExportOptions> options;
-    const py::object progress = optionsFrom(keywords, optionsOf(options));
-    const std::string from = pathOf(spec, "spec"), to = pathOf(folder, "folder");
-    jobs::LightingExport done;
-    watched(progress, {}, [&](const jobs::Listener& listener) {
-        done = jobs::exportLighting(from, to, withShared(options.shared, options.own), listener);
-    });
-    return fromJson(jobs::lightingJson(done, to));
+    return exportedAs<jobs::LightingExportOptions>(
+        spec, folder, keywords,
+        [](const auto& from, const auto& to, const auto& options, const auto& listener) {
+            return jobs::lightingJson(jobs::exportLighting(from, to, options, listener), to);
+        });
 }
 
 }  // namespace

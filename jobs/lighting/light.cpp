@@ -125,6 +125,18 @@ SplitLight split(const PictureLight& picture, const std::string& term, const std
     return result;
 }
 
+/// One line about coefficients that are off by more than a hundredth and than the tolerance; else
+/// empty. A smaller tolerance would not help: the nodes ended before it was reached.
+std::string poorRemark(const LightCoefficients& light, const LightOptions& options) {
+    constexpr double poor = 1e-2;
+    if (!(light.error > std::max(options.tolerance, poor))) return {};
+    const bool solves = !bases::find(light.basis).orthonormal;
+    return fmt::format(
+        "poor: the coefficients are off by about {}; better: {}", percent(light.error, 2),
+        solves ? fmt::format("{}, or fewer bands", Setting{"LightOptions::basis", "hsh"})
+               : "fewer bands");
+}
+
 }  // namespace
 
 nlohmann::ordered_json splitJson(const SplitLight& split) {
@@ -159,14 +171,8 @@ ProjectedLight light(const std::vector<std::string>& specs, const std::string& o
                      {.domain = {.normal = options.normal}, .tolerance = options.tolerance});
     result.light.source = specification.text;
     result.remarks = remarksOf(specification.lights);
-    constexpr double poor = 1e-3;
-    if (result.light.error > std::max(options.tolerance, poor))
-        result.remarks.push_back(fmt::format(
-            "poor: the coefficients are off by about {}; better: {}, or fewer bands",
-            percent(result.light.error, 2),
-            options.basis == "lsosh"
-                ? Setting{"LightOptions::basis", "hsh"}
-                : Setting{"LightOptions::tolerance", fmt::format("{:g}", options.tolerance / 10)}));
+    if (const std::string poor = poorRemark(result.light, options); !poor.empty())
+        result.remarks.push_back(poor);
     result.bands = bandEnergies(result.light);
     for (const double share : lightShares)
         result.enough.push_back(orderReaching(result.light.curves.front(), share));

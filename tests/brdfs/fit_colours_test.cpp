@@ -5,6 +5,7 @@
 #include <brdfs/fit/fit.h>
 #include <brdfs/fit/normal_equations.h>
 #include <brdfs/fit/prediction.h>
+#include <brdfs/fit_laws.h>
 #include <brdfs/rows/spec.h>
 
 #include <fmt/format.h>
@@ -72,39 +73,18 @@ TEST_P(ColouredFit, RecoversEveryChannel) {
     }
 }
 
-// f of a fit is f of the specification that it writes, in every channel, and the gradient is that
-// of differences.
 TEST_P(ColouredFit, ValuesAndGradientsAreThoseOfTheCatalogModel) {
     const FitSamples samples = samplesOf(GetParam().truth);
     const ParametricSum sum(GetParam().model, samples.isotropic, 0, true);
     const FitProblem problem(samples, sum, Loss::Kind::log);
-    std::vector<double> x, shapes;
-    for (const ShapeParameter& shape : sum.shapes()) {
+    std::vector<double> x;
+    for (const ShapeParameter& shape : sum.shapes())
         x.push_back(std::lerp(shape.toScale(shape.free.startLow),
                               shape.toScale(shape.free.startHigh),
                               0.3 + 0.05 * static_cast<double>(x.size())));
-        shapes.push_back(shape.toValue(x.back()));
-    }
     for (std::size_t k = 0; k < 3 * sum.linears().size(); ++k)
         x.push_back(0.2 + 0.1 * static_cast<double>(k % 3));
-    const std::vector<double> f = problem.values(x);
-    const auto own =
-        open(sum.filledIn({shapes}, std::span<const double>(x).subspan(shapes.size()), 3));
-    const std::vector<double> expected = valuesOf(*own, samples);
-    for (std::size_t v = 0; v < f.size(); ++v)
-        ASSERT_NEAR(f[v], expected[v], 1e-10 * (1 + expected[v])) << "value " << v;
-    const Equations equations = problem.joint(x, true);
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        const double at = x[i], step = 1e-6 * std::max(1., std::abs(at));
-        x[i] = at + step;
-        const double above = problem.joint(x, false).cost;
-        x[i] = at - step;
-        const double below = problem.joint(x, false).cost;
-        x[i] = at;
-        EXPECT_NEAR(equations.gradient[i], (above - below) / (2 * step),
-                    1e-5 * (1e-3 + std::abs(equations.gradient[i])))
-            << "parameter " << i;
-    }
+    expectValuesAndGradients(samples, sum, problem, x);
 }
 
 INSTANTIATE_TEST_SUITE_P(Materials, ColouredFit, testing::ValuesIn(materials));

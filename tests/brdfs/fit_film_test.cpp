@@ -5,6 +5,7 @@
 #include <brdfs/fit/normal_equations.h>
 #include <brdfs/fit/picture_samples.h>
 #include <brdfs/fit/prediction.h>
+#include <brdfs/fit_laws.h>
 #include <brdfs/random_draws.h>
 #include <hshfit/error.h>
 
@@ -45,36 +46,14 @@ std::vector<double> startOf(const ParametricSum& sum, std::size_t channels) {
     return x;
 }
 
-// f of a fit is f of the specification that it writes, in every channel, and the gradient of a loss
-// agrees with differences of the loss.
 TEST(FilmFit, ValuesAndGradientsAreThoseOfTheCatalogModel) {
     for (const std::string model :
          {"gltf-pbr:iridescenceFactor=.8", "openpbr:thin_film_weight=.8"}) {
         const FitSamples samples = samplesOf(gltfFilm, 300);
         const ParametricSum sum(model, true);
         const FitProblem problem(samples, sum, Loss::Kind::log);
-        std::vector<double> x = startOf(sum, 3);
-        const std::vector<double> f = problem.values(x);
-        std::vector<double> shapes;
-        for (std::size_t j = 0; j < sum.shapes().size(); ++j)
-            shapes.push_back(sum.shapes()[j].toValue(x[j]));
-        const auto own =
-            open(sum.filledIn({shapes}, std::span<const double>(x).subspan(shapes.size()), 3));
-        const std::vector<double> expected = valuesOf(*own, samples);
-        for (std::size_t v = 0; v < f.size(); ++v)
-            ASSERT_NEAR(f[v], expected[v], 1e-10 * (1 + expected[v])) << model << " value " << v;
-        const Equations equations = problem.joint(x, true);
-        for (std::size_t i = 0; i < x.size(); ++i) {
-            const double at = x[i], step = 1e-6 * std::max(1., std::abs(at));
-            x[i] = at + step;
-            const double above = problem.joint(x, false).cost;
-            x[i] = at - step;
-            const double below = problem.joint(x, false).cost;
-            x[i] = at;
-            EXPECT_NEAR(equations.gradient[i], (above - below) / (2 * step),
-                        1e-5 * (1e-3 + std::abs(equations.gradient[i])))
-                << model << " parameter " << i;
-        }
+        SCOPED_TRACE(model);
+        expectValuesAndGradients(samples, sum, problem, startOf(sum, 3));
     }
 }
 

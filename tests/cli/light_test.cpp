@@ -401,5 +401,20 @@ TEST_F(Lights, ScenesTakeSpecificationsAndEveryFormat) {
     EXPECT_NE(bad.err.find("1 to 15"), std::string::npos) << bad.err;
 }
 
+/// The program says what is off, and the command that it names is better.
+TEST_F(Light, CoefficientsThatAreOffArePoor) {
+    const std::string sky =
+        "light sky:type=12,elevation=20,radiance=1 --normal 0,0 --order 14 --json";
+    const Answer solved = run(sky + " --basis lsosh -o " + path("lsosh.json"));
+    ASSERT_EQ(solved.code, 0) << solved.err;
+    EXPECT_NE(solved.err.find("poor: the coefficients are off"), std::string::npos) << solved.err;
+    EXPECT_NE(solved.err.find("--basis hsh"), std::string::npos) << solved.err;
+    const Answer orthonormal = run(sky + " --basis hsh -o " + path("hsh.json"));
+    ASSERT_EQ(orthonormal.code, 0) << orthonormal.err;
+    EXPECT_EQ(orthonormal.err.find("poor"), std::string::npos) << orthonormal.err;
+    EXPECT_LT(Json::parse(orthonormal.out)["error"].get<double>(),
+              0.1 * Json::parse(solved.out)["error"].get<double>());
+}
+
 }  // namespace
 }  // namespace hshfit::test
