@@ -21,3 +21,11 @@ function(hshfit_vector_sources folder property value)
     hshfit_vector_sources(${subfolder} ${property} ${value})
   endforeach()
 endfunction()
+
+# hshfit_unfused(FILE…): sources in which products and sums are fused only explicitly, so that
+# results are bitwise identical in every vector width. GCC 12 forgets the option in functions for
+# other instruction sets after a precompiled header.
+function(hshfit_unfused)
+  set_source_files_properties(${ARGN} PROPERTIES
+    COMPILE_OPTIONS -ffp-contract=off SKIP_PRECOMPILE_HEADERS ON)
+endfunction()
