@@ -402,7 +402,7 @@ TEST_F(Lights, ScenesTakeSpecificationsAndEveryFormat) {
 }
 
 /// The program says what is off, and the command that it names is better.
-TEST_F(Light, CoefficientsThatAreOffArePoor) {
+TEST_F(Lights, CoefficientsThatAreOffArePoor) {
     const std::string sky =
         "light sky:type=12,elevation=20,radiance=1 --normal 0,0 --order 14 --json";
     const Answer solved = run(sky + " --basis lsosh -o " + path("lsosh.json"));
