@@ -52,7 +52,7 @@ std::string summary(const ReportEntry& entry) {
     }
     if (!entry.better.empty())
         text +=
-            fmt::format("  no basis captures 90 % over solid angle; better: {}\n", entry.better);
+            fmt::format("  no basis captures 90 % over solid angle; to try: {}\n", entry.better);
     return text;
 }
 

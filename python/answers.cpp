@@ -16,6 +16,7 @@ py::object poorDict(const std::optional<jobs::Poor>& poor) {
     py::dict out;
     out["reason"] = poor->reason;
     out["better"] = poor->better;
+    if (!poor->toTry.empty()) out["to_try"] = poor->toTry;
     return out;
 }
 

@@ -16,7 +16,7 @@
 
 namespace hshfit::python {
 
-/// {"reason": …, "better": …}, or None.
+/// As poorJson, or None.
 py::object poorDict(const std::optional<jobs::Poor>& poor);
 /// The object "picture" of the program's --json, or None.
 py::object pictureDict(const std::optional<PictureError>& picture);

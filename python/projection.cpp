@@ -152,7 +152,9 @@ void bindResult(py::module_& module) {
             "Errors over pairs of directions, for the halfway form; else None.")
         .def_property_readonly(
             "poor", [](const Result& r) { return poorDict(r.projected.poor); },
-            "None, or {\"reason\", \"better\"} where the result is poor\n"
+            "None, or {\"reason\", \"better\"} where the result is poor, with \"to_try\" where "
+            "the\n"
+            "call was not tried\n"
             "(docs/explanation/picture_error.md).")
         .def_property_readonly(
             "picture", [](const Result& r) { return pictureDict(r.projected.picture); },

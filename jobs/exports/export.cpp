@@ -429,8 +429,8 @@ Exported exportCoefficients(const std::string& path, const std::string& folder,
                                             : std::optional(Setting{"ExportOptions::outgoing"}));
     }
     if (exported.error.split)
-        exported.poor =
-            judge(*exported.error.split, exported.error.picture, exported.payload, path, folder);
+        exported.poor = judge(*exported.error.split, exported.error.picture, exported.payload,
+                              *source.brdf, path, folder);
     addProposal(chosen, options, Reconstruction(gpu::unpack(exported.payload)), exported);
     exported.textures = gpu::writeContainers(
         exported.payload, containersOf(chosen, options, pack.number, listener), exported.name,

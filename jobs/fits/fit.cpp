@@ -311,7 +311,7 @@ std::optional<Poor> judged(const Fitted& fitted, const Brdf& brdf, const brdfs::
         fitted.picture, call, [&] { return triedFits(brdf, samples, options, how, seen, fitted); });
     const std::string grey = greyColours(fitted.result, samples, how);
     if (grey.empty()) return poor;
-    if (!poor) return Poor{grey, "a model in whose colours f is linear, such as lambert+ggx"};
+    if (!poor) return Poor{grey, {}, "a model in whose colours f is linear, such as lambert+ggx"};
     poor->reason = grey + "; " + poor->reason;
     return poor;
 }

@@ -97,18 +97,19 @@ std::size_t chosen(const std::vector<ClusterError>& all, const TransferOptions& 
 /// Bounds that no form keeps.
 std::optional<Poor> judge(const ClusterError& kept, const TransferOptions& options) {
     if (options.bytes && kept.bytes > *options.bytes) {
-        return Poor{
-            fmt::format("the smallest matrices take {} bytes, and {} are allowed", kept.bytes,
-                        *options.bytes),
-            fmt::format("{} with fewer, or a lower {}", Setting{"TransferOptions::clusters"},
-                        Setting{"TransferOptions::localOrder"})};
+        return Poor{.reason = fmt::format("the smallest matrices take {} bytes, and {} are allowed",
+                                          kept.bytes, *options.bytes),
+                    .toTry = fmt::format("{} with fewer, or a lower {}",
+                                         Setting{"TransferOptions::clusters"},
+                                         Setting{"TransferOptions::localOrder"})};
     }
     if (!options.bytes && kept.relativeL2 > options.error) {
-        return Poor{fmt::format("the compressed matrices have an error of {}, and {} are asked for",
-                                percent(kept.relativeL2, 2), percent(options.error, 2)),
-                    fmt::format("more {} and {}, or the matrices of transfer.tensor",
-                                Setting{"TransferOptions::clusters"},
-                                Setting{"TransferOptions::components"})};
+        return Poor{.reason = fmt::format(
+                        "the compressed matrices have an error of {}, and {} are asked for",
+                        percent(kept.relativeL2, 2), percent(options.error, 2)),
+                    .toTry = fmt::format("more {} and {}, or the matrices of transfer.tensor",
+                                         Setting{"TransferOptions::clusters"},
+                                         Setting{"TransferOptions::components"})};
     }
     return {};
 }

@@ -1,5 +1,6 @@
 #include "quality.h"
 
+#include "better_form.h"
 #include "source.h"
 
 #include <hshfit/accuracy/metrics.h>
@@ -10,9 +11,6 @@
 #include <hshfit/pictures/poor.h>
 #include <hshfit/projection/one_basis.h>
 #include <hshfit/representation/forms/represented_brdf.h>
-#include <hshfit/representation/halfway/halfway.h>
-
-#include <brdfs/fit/fit_samples.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -31,72 +29,8 @@ using Kind = Representation::Kind;
 /// A step of a form that changes it by more than this (relative L2) is named beside the reason.
 constexpr double muchChanged = 0.3;
 
-Setting kindSetting(Kind kind) {
-    return {"Form::kind", std::string(kindName(kind))};
-}
-
-/// The source projected once more, to the same file.
-std::string projectedAgain(const CoefficientHead& head, std::vector<Setting> settings,
-                           const std::string& output) {
-    return fmt::format("{}", Call{.function = "writeRepresentation",
-                                  .subject = head.source,
-                                  .settings = std::move(settings),
-                                  .output = output});
-}
-
-/// The settings of coefficients of this order for the source and set of `head`. A basis that ends
-/// below the order gives way to hemispherical harmonics.
-std::vector<Setting> settingsWith(int order, const CoefficientHead& head) {
-    const bool ends = head.basis.empty() || bases::find(head.basis).maxOrder < order;
-    std::vector<Setting> settings = {{"Form::basis", ends ? "hsh" : head.basis},
-                                     {"Form::order", std::to_string(order)}};
-    if (!head.outgoing.directions.empty())
-        settings.push_back({"Form::outgoing", head.outgoing.spec()});
-    if (head.quantity == Quantity::brdfCosine) settings.push_back({"Form::quantity"});
-    return settings;
-}
-
-/// The measured pairs of directions behind a BRDF; none of functions and tables.
-std::optional<std::size_t> measuredPairs(const Brdf& source) {
-    if (!brdfs::areMeasured(source)) return std::nullopt;
-    try {
-        return brdfs::gatherSamples(source, {}).size();
-    } catch (const NumericError&) {
-        return 0;
-    }
-}
-
-/// Whether the data determine a form of so many functions.
-bool determine(const Brdf& source, std::size_t functions) {
-    const auto pairs = measuredPairs(source);
-    return !pairs || *pairs >= functions;
-}
-
-/// The functions of the halfway form as it is by default.
-std::size_t halfwayFunctions(const Laws& laws) {
-    return HalfwayTerms(halfwayOrdersOr({}, laws.isotropic, laws.reciprocal),
-                        {laws.isotropic, laws.mirrorSymmetric, laws.reciprocal})
-        .size();
-}
-
-/// The call for a form of so many functions; of data with fewer measured pairs the fit of a model.
-std::string ifDetermined(const std::string& call, std::size_t functions,
-                         const CoefficientHead& head, const Brdf& source) {
-    if (determine(source, functions)) return call;
-    return fmt::format("{}", Call{.function = "fit",
-                                  .subject = head.source,
-                                  .settings = {{"FitOptions::model", "lambert+ggx"}},
-                                  .output = "fit.json"});
-}
-
-std::size_t functionsOf(int order) {
-    return static_cast<std::size_t>(order) * static_cast<std::size_t>(order);
-}
-
-/// To twice the order: every band adds to the energy captured.
-std::string toTwiceTheOrder(const CoefficientHead& head, const std::string& output) {
-    constexpr int least = 8;  // of forms without an order of their own
-    return projectedAgain(head, settingsWith(std::max(2 * head.order, least), head), output);
+Poor poorWith(const std::string& reason, Advice advice) {
+    return {reason, std::move(advice.better), std::move(advice.toTry)};
 }
 
 /// A set of twice as many elevations, or texels along each side; as it is for one direction.
@@ -123,63 +57,6 @@ OutgoingSet fewOf(const CoefficientHead& head) {
     if (!own.directions.empty() && own.map == OutgoingSet::Map::direction) return own;
     if (head.isotropic) return OutgoingSet::elevations(trialElevations);
     return OutgoingSet::parabolic(trialTexels, trialTexels);
-}
-
-std::string textOf(const HalfwayOrders& o) {
-    return fmt::format("{},{},{}", o.half, o.difference, o.azimuth);
-}
-
-/// The halfway form of this head with more functions along each axis; empty where it has too many.
-std::string toMoreFunctions(const Representation& kept, const Brdf& source,
-                            const std::string& output) {
-    const HalfwayOrders& own = kept.halfway;
-    for (const int more : {own.half, own.half / 2, own.half / 4}) {
-        const HalfwayOrders orders{own.half + more, own.difference + 2, own.azimuth + 1};
-        if (more == 0 ||
-            HalfwayTerms(orders, halfwaySymmetryOf(kept.head)).size() > mostHalfwayTerms)
-            continue;
-        std::vector<Setting> settings = {kindSetting(Kind::halfway),
-                                         {"Form::halfway", textOf(orders)}};
-        if (kept.head.reciprocal && !source.laws().reciprocal)
-            settings.push_back({"Form::reciprocal"});
-        return projectedAgain(kept.head, std::move(settings), output);
-    }
-    return {};
-}
-
-/// Whether a halfway form has no more functions about the half vector than by default.
-bool isWithinUsual(const Representation& kept) {
-    const CoefficientHead& head = kept.head;
-    return kept.halfway.half <= halfwayOrdersOr({}, head.isotropic, head.reciprocal).half;
-}
-
-std::string toHalfway(const CoefficientHead& head, const Brdf& source, const std::string& output) {
-    return ifDetermined(projectedAgain(head, {kindSetting(Kind::halfway)}, output),
-                        halfwayFunctions(source.laws()), head, source);
-}
-
-/// The call that does better than a result of this head; `kept` where it is the halfway form. Empty
-/// where none is known to: more functions than these lower the error of the mean and may raise
-/// false extrema. The trial of orders is for results that capture too little: it sees energy alone.
-std::string betterThan(const CoefficientHead& head, const Representation* kept, bool lacksEnergy,
-                       const Brdf& source, const std::string& output) {
-    const auto order = lacksEnergy ? sufficientOrder(source, head) : std::nullopt;
-    if (order && *order > head.order)
-        return ifDetermined(projectedAgain(head, settingsWith(*order, head), output),
-                            functionsOf(*order), head, source);
-    if (kept) return isWithinUsual(*kept) ? toMoreFunctions(*kept, source, output) : std::string();
-    // The halfway form holds f at every direction.
-    const bool all =
-        head.outgoing.directions.empty() || head.outgoing.map != OutgoingSet::Map::direction;
-    constexpr int highest = 32;
-    const bool isHigh = head.order >= (lacksEnergy ? highest : highest / 4);
-    if (all && (isHigh || isAboutTheMirror(source))) return toHalfway(head, source, output);
-    if (isHigh) return {};
-    return ifDetermined(toTwiceTheOrder(head, output), functionsOf(2 * head.order), head, source);
-}
-
-bool lacksEnergy(const std::optional<double>& captured) {
-    return captured && *captured < PoorBounds{}.captured;
 }
 
 /// By the squares of the coefficients of an orthonormal basis. None for other forms and bases.
@@ -288,12 +165,15 @@ bool isAboutTheMirror(const Brdf& source) {
 }
 
 std::string Poor::line() const {
-    if (better.empty()) return fmt::format("poor: {}; no form is known to do better", reason);
-    return fmt::format("poor: {}; better: {}", reason, better);
+    if (!better.empty()) return fmt::format("poor: {}; better: {}", reason, better);
+    if (!toTry.empty()) return fmt::format("poor: {}; to try: {}", reason, toTry);
+    return fmt::format("poor: {}; no form is known to do better", reason);
 }
 
 nlohmann::ordered_json poorJson(const Poor& poor) {
-    return {{"reason", poor.reason}, {"better", poor.better}};
+    nlohmann::ordered_json json = {{"reason", poor.reason}, {"better", poor.better}};
+    if (!poor.toTry.empty()) json["to_try"] = poor.toTry;
+    return json;
 }
 
 std::optional<double> capturedShare(const Projection& projection, const Brdf& source) {
@@ -310,74 +190,71 @@ std::optional<double> capturedShare(const Representation& kept, const Brdf& sour
 }
 
 std::string betterCall(const CoefficientHead& head, const Brdf& source, const std::string& output) {
-    if (const auto order = sufficientOrder(source, head); order && *order > head.order)
-        return ifDetermined(projectedAgain(head, settingsWith(*order, head), output),
-                            functionsOf(*order), head, source);
+    if (const auto order = sufficientOrder(source, head); order && *order > head.order) {
+        const auto functions = static_cast<std::size_t>(*order) * static_cast<std::size_t>(*order);
+        return determine(source, functions) ? callOf(coefficientsOf(*order, head), head, output)
+                                            : callOfModel(head);
+    }
     const bool all =
         head.outgoing.directions.empty() || head.outgoing.map != OutgoingSet::Map::direction;
     if (!all || !isAboutTheMirror(source)) return {};
-    return toHalfway(head, source, output);
+    return callOfHalfway(head, source, output);
 }
 
 std::optional<Poor> judge(const Projection& projection, std::optional<double> captured,
                           const std::optional<PictureError>& picture, const Brdf& source,
                           const std::string& output) {
-    const Coefficients& c = projection.coefficients;
     const auto reason = poorReason(captured, picture);
     if (!reason) return std::nullopt;
-    if (c.leastSquares) return Poor{*reason, toHalfway(c, source, output)};
-    return Poor{*reason, betterThan(c, nullptr, lacksEnergy(captured), source, output)};
+    return poorWith(*reason, adviceBeside(projection.coefficients, nullptr, source, output));
 }
 
 std::optional<Poor> judge(const Representation& kept, std::optional<double> captured,
                           const std::optional<PictureError>& picture, const Brdf& source,
                           const std::string& output) {
-    const auto reason = poorReason(captured, picture);
+    auto reason = poorReason(captured, picture);
     if (!reason) return std::nullopt;
     const bool halfway = kept.kind() == Kind::halfway;
+    std::vector<Form> first;
     const auto worst = std::ranges::max_element(kept.steps, {}, &RepresentationStep::change);
     if (!halfway && worst != kept.steps.end() && worst->change > muchChanged) {
-        // Without any step.
-        std::vector<Setting> settings = {{"Form::basis", kept.head.basis},
-                                         {"Form::order", std::to_string(kept.head.order)}};
-        if (kept.kind() == Kind::basis) settings.insert(settings.begin(), kindSetting(kept.kind()));
-        return Poor{
-            fmt::format("{}; {} changes it by {}", *reason, worst->what, percent(worst->change)),
-            projectedAgain(kept.head, std::move(settings), output)};
+        *reason += fmt::format("; {} changes it by {}", worst->what, percent(worst->change));
+        Form without = coefficientsOf(kept.head.order, kept.head);  // without any step
+        without.kind = kept.kind();
+        first.push_back(std::move(without));
     }
-    return Poor{*reason, betterThan(kept.head, halfway ? &kept : nullptr, lacksEnergy(captured),
-                                    source, output)};
+    return poorWith(*reason,
+                    adviceBeside(kept.head, halfway ? &kept : nullptr, source, output, first));
 }
 
 std::optional<Poor> judge(const gpu::ErrorSplit& split, const std::optional<PictureError>& picture,
-                          const gpu::Payload& payload, const std::string& path,
+                          const gpu::Payload& payload, const Brdf& source, const std::string& path,
                           const std::string& folder) {
     const auto reason = poorReason(1 - split.total * split.total, picture);
     if (!reason) return std::nullopt;
     const CoefficientHead& head = payload.head;
-    const std::vector<Setting> plain = {{"Form::basis", head.basis},
-                                        {"Form::order", std::to_string(head.order)}};
-    std::vector<Setting> dense = plain;
-    dense.push_back({"Form::outgoing", finer(head.outgoing)});
-    const Call wider{.function = "exportCoefficients",
-                     .subject = path,
-                     .settings = {{"PackOptions::number", "float32"}},
-                     .output = folder};
+    const Form plain = coefficientsOf(head.order, head);
+    Form dense = plain;
+    dense.outgoing = finer(head.outgoing);
     struct Cause {
         double share;
         std::string_view name;
-        std::string better;
+        std::vector<Form> remedy;
     };
     const std::array<Cause, 4> causes{
-        {{split.truncation, "truncation", toTwiceTheOrder(head, path)},
-         {split.form, "the form of the coefficients", projectedAgain(head, plain, path)},
-         {split.interpolation, "interpolation between outgoing directions",
-          projectedAgain(head, dense, path)},
-         {split.quantisation, "storage", fmt::format("{}", wider)}}};
+        {{split.truncation, "truncation", {}},
+         {split.form, "the form of the coefficients", {plain}},
+         {split.interpolation, "interpolation between outgoing directions", {dense}},
+         {split.quantisation, "storage", {}}}};
     const auto* const worst = std::ranges::max_element(causes, {}, &Cause::share);
-    return Poor{fmt::format("{}; most of the error of {} is {}", *reason, percent(split.total),
-                            worst->name),
-                worst->better};
+    const std::string text = fmt::format("{}; most of the error of {} is {}", *reason,
+                                         percent(split.total), worst->name);
+    if (worst == &causes.back() && passes(plain, source))
+        return Poor{text, fmt::format("{}", Call{.function = "exportCoefficients",
+                                                 .subject = path,
+                                                 .settings = {{"PackOptions::number", "float32"}},
+                                                 .output = folder})};
+    return poorWith(text, adviceBeside(head, nullptr, source, path, worst->remedy));
 }
 
 std::string adviceBeyondModels(const Brdf& data) {
@@ -401,10 +278,11 @@ std::optional<Poor> judgeFit(const std::optional<PictureError>& picture, const F
     if (!reason) return std::nullopt;
     if (!looksPoor && !isFarOff && call.relativeError > 1 && call.loss != "cosine" &&
         call.loss != "l2")
-        return Poor{fmt::format("{}; the error of f cos(theta_i) is {} of it, in peaks that the "
-                                "loss {} hardly sees",
-                                *reason, percent(call.relativeError), call.loss),
-                    fitAgain(call, call.model, {{"FitOptions::loss", "cosine"}})};
+        return Poor{
+            .reason = fmt::format("{}; the error of f cos(theta_i) is {} of it, in peaks that "
+                                  "the loss {} hardly sees",
+                                  *reason, percent(call.relativeError), call.loss),
+            .toTry = fitAgain(call, call.model, {{"FitOptions::loss", "cosine"}})};
     const std::vector<TriedFit> fits = tried();
     std::optional<Poor> better;
     if (looksPoor)
@@ -414,11 +292,10 @@ std::optional<Poor> judgeFit(const std::optional<PictureError>& picture, const F
     else
         better = withMostExplained(*reason, call, fits);
     if (better) return better;
-    if (!call.otherwise.empty()) return Poor{*reason, call.otherwise};
-    return Poor{*reason, fmt::format("{}", Call{.function = "writeRepresentation",
-                                                .subject = call.data,
-                                                .settings = {kindSetting(Kind::halfway)},
-                                                .output = "halfway.json"})};
+    if (!call.otherwise.empty()) return Poor{*reason, {}, call.otherwise};
+    CoefficientHead head;
+    head.source = call.data;
+    return Poor{*reason, {}, callOf({.kind = Kind::halfway}, head, "halfway.json")};
 }
 
 }  // namespace hshfit::jobs

@@ -18,14 +18,17 @@
 
 namespace hshfit::jobs {
 
-/// A result that is poor (pictures/poor.h): what is wrong with it, and the call that does better.
+/// A result that is poor (pictures/poor.h): what is wrong with it, and the call that does better,
+/// or one to try. At most one of the two is there.
 struct Poor {
     std::string reason;
-    std::string better;
+    std::string better = {};  ///< was tried, and is not poor; of fits, see judgeFit
+    std::string toTry = {};   ///< was not tried
 
-    std::string line() const;  ///< "poor: REASON; better: CALL", or that none is known
+    std::string line()
+        const;  ///< "poor: REASON; better: CALL", "…; to try: …", or that none is known
 };
-/// {"reason": …, "better": …}
+/// {"reason": …, "better": …}, and "to_try" where there is one.
 nlohmann::ordered_json poorJson(const Poor& poor);
 
 /// The share of its source's energy that a result captures. For plain coefficients and orthonormal
@@ -38,15 +41,14 @@ std::optional<double> capturedShare(const Projection& projection, const Brdf& so
 std::optional<double> capturedShare(const Representation& kept, const Brdf& source,
                                     const std::optional<PairSummary>& pairs = {});
 
-/// Plain coefficients. The call that does better is found by a trial: the order up to 24 that
-/// captures enough at a few outgoing directions; else the halfway form, or a finer one, if f^2 is
-/// about the mirror direction; else twice the order. Of scattered data with fewer measured pairs
-/// than such a form has functions it is the fit of a model, here and below.
+/// Plain coefficients, with the advice of better_form.h.
 std::optional<Poor> judge(const Projection& projection, std::optional<double> captured,
                           const std::optional<PictureError>& picture, const Brdf& source,
                           const std::string& output);
-/// The call that captures more than coefficients with this head, by the same trial; empty if it
-/// finds neither an order nor that the halfway form is made for this BRDF.
+/// The call that captures more than coefficients with this head: the order up to 24 that captures
+/// enough at a few outgoing directions; else the halfway form, which is not tried, if f^2 is about
+/// the mirror direction; else empty. Of scattered data with fewer measured pairs than such a form
+/// has functions it is the fit of a model.
 std::string betterCall(const CoefficientHead& head, const Brdf& source, const std::string& output);
 /// The least order, up to 24, that captures enough of a BRDF at a few outgoing directions; none
 /// where there is none. `head` says the basis, the quantity and the outgoing directions.
@@ -54,13 +56,14 @@ std::optional<int> sufficientOrder(const Brdf& source, const CoefficientHead& he
 /// Whether most of the energy of f cos cos has its half vector within 20 degrees of the normal: the
 /// halfway form resolves lobes there, and no others.
 bool isAboutTheMirror(const Brdf& source);
-/// A form. Where a step changed it much, that is named, and better is the form without it.
+/// A form. Where a step changed it much, that is named, and the form without it is tried first.
 std::optional<Poor> judge(const Representation& kept, std::optional<double> captured,
                           const std::optional<PictureError>& picture, const Brdf& source,
                           const std::string& output);
-/// An export of the coefficients at `path` to `folder`, with its largest cause of error.
+/// An export of the coefficients of `source` at `path` to `folder`, with its largest cause of
+/// error. The remedy of that cause is tried first.
 std::optional<Poor> judge(const gpu::ErrorSplit& split, const std::optional<PictureError>& picture,
-                          const gpu::Payload& payload, const std::string& path,
+                          const gpu::Payload& payload, const Brdf& source, const std::string& path,
                           const std::string& folder);
 /// A fit that was made in a trial.
 struct TriedFit {
@@ -88,7 +91,7 @@ std::string adviceBeyondModels(const Brdf& data);
 /// samples are off by a factor of more than 2, likewise that with the least such factor. Else it is
 /// the loss of f cos(theta_i) if the error of that exceeds f itself, in peaks that the fit's own
 /// loss hardly sees, or the model of `tried` that explains most of the data, if that is 2 % more.
-/// Where none is better, it is `otherwise`, or the halfway form. `tried` is called for poor fits
+/// Where none is better, `otherwise` or the halfway form is to try. `tried` is called for poor fits
 /// only.
 std::optional<Poor> judgeFit(const std::optional<PictureError>& picture, const FitCall& call,
                              const std::function<std::vector<TriedFit>()>& tried);

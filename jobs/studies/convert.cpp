@@ -123,9 +123,9 @@ void stateError(const Brdf& input, const std::string& output, const brdfs::Param
     if (!result.error) return;
     const auto reason = poorReason(1 - *result.error * *result.error, result.picture);
     if (reason)
-        result.poor =
-            Poor{fmt::format("{}: {}", output, *reason),
-                 fmt::format("more nodes, or another format ({})", Call{.function = "writers"})};
+        result.poor = Poor{.reason = fmt::format("{}: {}", output, *reason),
+                           .toTry = fmt::format("more nodes, or another format ({})",
+                                                Call{.function = "writers"})};
 }
 
 /// Writes, and measures what was lost. The counts of repairs are known once all is written.

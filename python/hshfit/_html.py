@@ -56,8 +56,10 @@ def _svg(figure):
 def _poor(found):
     if not found.poor:
         return ""
-    return f"<p>poor: {html.escape(found.poor['reason'])}; better: " \
-           f"<code>{html.escape(found.poor['better'])}</code></p>"
+    calls = [f"{label}: <code>{html.escape(found.poor[key])}</code>"
+             for key, label in (("better", "better"), ("to_try", "to try")) if found.poor.get(key)]
+    return f"<p>poor: {html.escape(found.poor['reason'])}; " \
+           f"{calls[0] if calls else 'no form is known to do better'}</p>"
 
 
 def brdf(self):

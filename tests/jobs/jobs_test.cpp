@@ -41,16 +41,21 @@ TEST(JudgeFit, NamesWhatIsBetterByTheMeasureThatIsPoor) {
     std::vector<jobs::TriedFit> fits{
         {.model = "ggx+eon", .explained = 0.99, .flip = 0.15},
         {.model = "ggx", .loss = "log", .explained = 0.999, .flip = 0.12, .factor = 1.5}};
+    const auto has = [](const std::string& text, const std::string& part) {
+        return text.find(part) != std::string::npos;
+    };
     std::size_t tried = 0;
     const auto betterOf = [&](double flip) {
         const auto poor = judgeFit(lookedAt(flip), call, [&] {
             ++tried;
             return fits;
         });
-        return poor ? poor->reason + "|" + poor->better : std::string();
-    };
-    const auto has = [](const std::string& text, const std::string& part) {
-        return text.find(part) != std::string::npos;
+        if (!poor) return std::string();
+        // A fit that was not made is only to try.
+        EXPECT_EQ(poor->toTry.empty(),
+                  has(poor->reason, " in place of ") || has(poor->reason, " explains "))
+            << poor->reason;
+        return poor->reason + "|" + poor->better + poor->toTry;
     };
     EXPECT_EQ(betterOf(0.05), "");
     EXPECT_EQ(tried, 0U);

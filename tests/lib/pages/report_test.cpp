@@ -287,7 +287,7 @@ TEST_F(ReportFiles, WithoutASufficientBasisThePageNamesTheCallThatDoesBetter) {
     EXPECT_EQ(page.find("&gt; 81"), std::string::npos);
     EXPECT_EQ(page.find("Bold: the fewest"), std::string::npos);
     EXPECT_NE(page.find("hsh 15.8 % (81)"), std::string::npos);
-    EXPECT_NE(page.find("This does better: <code>project &lt;again&gt;</code>"), std::string::npos);
+    EXPECT_NE(page.find("To try: <code>project &lt;again&gt;</code>"), std::string::npos);
     EXPECT_EQ(Json::parse(contentOf(folder / "a/report.json"))["reports"][0]["better"],
               entry.better);
 }
