@@ -23,12 +23,14 @@ void runGaussians(const GaussianArguments& arguments, const Globals& globals) {
     const jobs::FittedGaussians fitted = jobs::fitGaussians(
         arguments.spec, arguments.output, arguments.options, listenerFor(globals));
     const Json answer = jobs::gaussiansJson(fitted, arguments.output, arguments.options);
+    if (fitted.poor) note(globals, fitted.poor->line());
     if (globals.json) return printJson(answer);
     std::string text = fmt::format(
         "{}: {} {} lobes for each of {} outgoing directions; relative error {:.4f}, albedo off by "
         "at most {:.2f} %\n",
         arguments.output, answer["lobes"].get<int>(), answer["kind"].get<std::string>(),
         fitted.outgoing.size(), fitted.meanError, 100 * fitted.largestEnergyError);
+    if (fitted.picture) text += "  " + summaryOf(*fitted.picture) + "\n";
     for (const MetricValue& value : fitted.metrics) text += metricText(value);
     printText(text);
 }

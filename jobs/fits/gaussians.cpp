@@ -4,9 +4,13 @@
 #include <jobs/common/metric_json.h>
 #include <jobs/common/option_words.h>
 #include <jobs/common/shared_options.h>
+#include <jobs/source/better_form.h>
+#include <jobs/source/picture.h>
 #include <jobs/source/source.h>
 
 #include <hshfit/files/atomic_file.h>
+#include <hshfit/pages/picture_error_json.h>
+#include <hshfit/pictures/poor.h>
 #include <hshfit/spelling.h>
 
 #include <brdfs/fit/gaussian_mixture_json.h>
@@ -64,6 +68,19 @@ void addTotals(FittedGaussians& result) {
     }
 }
 
+/// The picture error, and whether the mixture is poor. Forms of coefficients have the advice.
+void judge(const Brdf& brdf, FittedGaussians& result) {
+    const bool sphere = result.outgoing.map != OutgoingSet::Map::direction;
+    if (sphere) result.picture = pictureErrorOf(brdf, result.mixture);
+    const auto reason = poorReason(1 - result.meanError * result.meanError, result.picture);
+    if (!reason) return;
+    CoefficientHead head;
+    head.source = result.brdf;
+    if (!sphere) head.outgoing = result.outgoing;
+    const Advice advice = adviceBeside(head, nullptr, brdf, "coefficients.json");
+    result.poor = Poor{*reason, advice.better, advice.toTry};
+}
+
 }  // namespace
 
 OptionRows<GaussianOptions> gaussianOptions() {
@@ -89,6 +106,7 @@ FittedGaussians fitGaussians(const std::string& spec, const std::string& output,
     writeFile(output, brdfs::gaussianMixtureJson(result.mixture));
     if (!metrics.empty()) result.metrics = compare(*brdf, result.mixture, outgoing, metrics);
     addTotals(result);
+    judge(*brdf, result);
     if (result.unsettled > 0)
         listener.say(fmt::format("{} of {} fits ended before they had settled", result.unsettled,
                                  outgoing.size()));
@@ -97,17 +115,20 @@ FittedGaussians fitGaussians(const std::string& spec, const std::string& output,
 
 nlohmann::ordered_json gaussiansJson(const FittedGaussians& fitted, const std::string& output,
                                      const GaussianOptions& options) {
-    return {{"format", "hshfit-gaussians-answer"},
-            {"version", 1},
-            {"brdf", fitted.brdf},
-            {"output", output},
-            {"kind", GaussianKinds::name(options.fit.kind)},
-            {"lobes", options.fit.lobes},
-            {"outgoing", fitted.outgoing.spec()},
-            {"mean_error", fitted.meanError},
-            {"largest_energy_error", fitted.largestEnergyError},
-            {"unsettled", fitted.unsettled},
-            {"metrics", metricValuesJson(fitted.metrics)}};
+    nlohmann::ordered_json json = {{"format", "hshfit-gaussians-answer"},
+                                   {"version", 1},
+                                   {"brdf", fitted.brdf},
+                                   {"output", output},
+                                   {"kind", GaussianKinds::name(options.fit.kind)},
+                                   {"lobes", options.fit.lobes},
+                                   {"outgoing", fitted.outgoing.spec()},
+                                   {"mean_error", fitted.meanError},
+                                   {"largest_energy_error", fitted.largestEnergyError},
+                                   {"unsettled", fitted.unsettled},
+                                   {"metrics", metricValuesJson(fitted.metrics)}};
+    if (fitted.poor) json["poor"] = poorJson(*fitted.poor);
+    if (fitted.picture) json["picture"] = pictureErrorJson(*fitted.picture);
+    return json;
 }
 
 }  // namespace hshfit::jobs

@@ -2,14 +2,17 @@
 
 #include <jobs/common/listener.h>
 #include <jobs/common/option_row.h>
+#include <jobs/source/quality.h>
 
 #include <hshfit/accuracy/metrics.h>
+#include <hshfit/pictures/picture_error.h>
 
 #include <brdfs/fit/gaussian_mixture_fit.h>
 
 #include <nlohmann/json_fwd.hpp>
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +36,8 @@ struct FittedGaussians {
     double largestEnergyError = 0;  ///< of the albedo, relative
     std::size_t unsettled = 0;      ///< outgoing directions whose fit did not converge
     std::vector<MetricValue> metrics = {};
+    std::optional<PictureError> picture = {};  ///< pictureErrorOf
+    std::optional<Poor> poor = {};             ///< the energy captured is 1 - meanError^2
 };
 
 /// Gaussians over wi for every outgoing direction of a BRDF (fitGaussians), written to `output` as

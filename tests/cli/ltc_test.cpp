@@ -51,6 +51,38 @@ TEST_F(Cli, GaussiansAreABrdf) {
     EXPECT_EQ(run("info " + path("g.json")).code, 0);
 }
 
+// By the rule of all other commands, and with the numbers of `compare`.
+TEST_F(Cli, GaussiansThatLookWrongArePoor) {
+    const std::string call = "gaussians ggx:alpha=.3 --force -o " + path("g.json");
+    const Answer answer = run(call + " --json");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    const Json json = Json::parse(answer.out);
+    const Answer compared = run("compare ggx:alpha=.3 " + path("g.json") + " --json");
+    ASSERT_EQ(compared.code, 0) << compared.err;
+    const Json own = json["picture"], theirs = Json::parse(compared.out)["picture"];
+    for (const char* key : {"flip", "ciede2000"})
+        EXPECT_NEAR(own[key]["mean"], theirs[key]["mean"].get<double>(), 1e-6) << key;
+    EXPECT_NEAR(own["false_peak"]["value"], theirs["false_peak"]["value"].get<double>(), 1e-6);
+    ASSERT_GT(own["false_peak"]["value"], 0.1);
+    EXPECT_NE(json["poor"]["reason"].get<std::string>().find("a false peak of"), std::string::npos);
+    const Answer text = run(call);
+    EXPECT_NE(text.err.find("poor: a false peak of"), std::string::npos) << text.err;
+    EXPECT_NE(text.out.find("FLIP "), std::string::npos) << text.out;
+    // The call to try has no such peak.
+    std::string call2 = json["poor"]["to_try"];
+    ASSERT_TRUE(call2.starts_with("hshfit project ggx:alpha=0.3 -o coefficients.json")) << call2;
+    call2.replace(call2.find("coefficients.json"), 17, path("c.json"));
+    const Answer better = run(call2.substr(7) + " --json");
+    ASSERT_EQ(better.code, 0) << better.err;
+    EXPECT_FALSE(Json::parse(better.out).contains("poor"));
+    // Smooth lobes look right; one direction has no picture.
+    EXPECT_EQ(run("gaussians lambert --quiet --json -o " + path("l.json")).out.find("\"poor\""),
+              std::string::npos);
+    EXPECT_EQ(run("gaussians ggx:alpha=.3 --outgoing 30,0 --json -o " + path("d.json"))
+                  .out.find("\"picture\""),
+              std::string::npos);
+}
+
 TEST_F(Cli, GaussiansNameWhatIsWrong) {
     expectError("gaussians ward:ax=.1,ay=.3 -o " + path("g.json"), 2, "isotropic", 0);
     expectError("gaussians ggx:alpha=.3 --outgoing 4x4 -o " + path("g.json"), 2, "elevations", 0);
