@@ -66,12 +66,17 @@ Json answer(const jobs::Projected& result) {
     return document;
 }
 
+std::string_view functionOf(const Coefficients& c) {
+    return c.quantity == Quantity::brdfCosine ? "f cos(theta_i)" : "f";
+}
+
 void noteQuality(const jobs::Projected& result, const std::string& prefix, const Globals& globals) {
     const Energy& energy = result.projection.coefficients.energy;
     // The halfway form has the energy of f cos cos, which its errors state.
     const bool halfway = result.kept && result.kept->kind() == Representation::Kind::halfway;
     if (!energy.finite && !halfway)
-        note(globals, prefix + "the energy does not exist: " + energy.reason);
+        note(globals, fmt::format("{}the energy of {} does not exist: {}", prefix,
+                                  functionOf(result.projection.coefficients), energy.reason));
     if (!result.remark.empty()) note(globals, result.remark);
     if (const auto side = transmissionSide(result.projection.coefficients.source); !side.empty())
         note(globals, fmt::format("{}coefficients of {}: outgoing (x, y, z) stands for (x, y, -z)",
@@ -80,8 +85,14 @@ void noteQuality(const jobs::Projected& result, const std::string& prefix, const
 }
 
 std::string capturedText(const jobs::Projected& result) {
-    return result.captured ? fmt::format("{:.6f} of the energy captured", *result.captured)
-                           : std::string(noCapturedEnergy);
+    if (!result.captured) return std::string(noCapturedEnergy);
+    const Coefficients& c = result.projection.coefficients;
+    const std::string_view captured = result.kept ? jobs::capturedFunction(*result.kept)
+                                                  : jobs::capturedFunction(result.projection);
+    // Named where it is not that of the coefficients' own function.
+    return captured == functionOf(c)
+               ? fmt::format("{:.6f} of the energy captured", *result.captured)
+               : fmt::format("{:.6f} of the energy of {} captured", *result.captured, captured);
 }
 
 std::string linesWithoutPicture(const jobs::Projected& result) {

@@ -59,12 +59,17 @@ OutgoingSet fewOf(const CoefficientHead& head) {
     return OutgoingSet::parabolic(trialTexels, trialTexels);
 }
 
+/// Whether the squares of the coefficients say how much energy a form captures.
+bool hasSquares(const Representation& kept) {
+    const CoefficientHead& head = kept.head;
+    return kept.kind() == Kind::outgoing && kept.added.empty() && head.energy.finite &&
+           head.energy.value > 0 && bases::find(head.basis).orthonormal;
+}
+
 /// By the squares of the coefficients of an orthonormal basis. None for other forms and bases.
 std::optional<double> capturedBy(const Representation& kept) {
+    if (!hasSquares(kept)) return std::nullopt;
     const CoefficientHead& head = kept.head;
-    if (kept.kind() != Kind::outgoing || !kept.added.empty() || !head.energy.finite ||
-        !(head.energy.value > 0) || !bases::find(head.basis).orthonormal)
-        return std::nullopt;
     const Coefficients c = decoded(kept);
     const std::size_t size = c.channels.count() * static_cast<std::size_t>(c.slots());
     double captured = 0;
@@ -76,12 +81,26 @@ std::optional<double> capturedBy(const Representation& kept) {
     return captured / head.energy.value;
 }
 
-/// The share of f cos(theta_i) that `result` captures: at its own outgoing directions if few.
+/// Whether a share is measured over pairs of directions, not at the outgoing directions of a
+/// result.
+bool isOverPairs(const OutgoingSet& set) {
+    constexpr std::size_t few = 64;
+    return set.directions.empty() || set.size() > few;
+}
+
+std::string_view functionOf(Quantity quantity) {
+    return quantity == Quantity::brdfCosine ? "f cos(theta_i)" : "f";
+}
+
+std::string_view measuredFunction(const OutgoingSet& set) {
+    return isOverPairs(set) ? "f cos(theta_i) cos(theta_o)" : "f cos(theta_i)";
+}
+
+/// The share of measuredFunction that `result` captures.
 std::optional<double> measuredShare(const Brdf& source, const Brdf& result, const OutgoingSet& set,
                                     const std::optional<PairSummary>& pairs) {
-    constexpr std::size_t few = 64;
     try {
-        if (set.directions.empty() || set.size() > few) {
+        if (isOverPairs(set)) {
             const double left = (pairs ? *pairs : summaryOf(source, result)).energyLeft.value;
             return std::isfinite(left) ? std::optional(1 - left) : std::nullopt;
         }
@@ -187,6 +206,16 @@ std::optional<double> capturedShare(const Representation& kept, const Brdf& sour
                                     const std::optional<PairSummary>& pairs) {
     if (const auto share = capturedBy(kept)) return share;
     return measuredShare(source, *reconstruct(kept, sourceOpener()), kept.head.outgoing, pairs);
+}
+
+std::string_view capturedFunction(const Projection& projection) {
+    const Coefficients& c = projection.coefficients;
+    return !c.leastSquares && !c.energy.finite ? measuredFunction(c.outgoing)
+                                               : functionOf(c.quantity);
+}
+
+std::string_view capturedFunction(const Representation& kept) {
+    return hasSquares(kept) ? functionOf(kept.head.quantity) : measuredFunction(kept.head.outgoing);
 }
 
 std::string betterCall(const CoefficientHead& head, const Brdf& source, const std::string& output) {

@@ -41,6 +41,11 @@ std::optional<double> capturedShare(const Projection& projection, const Brdf& so
 std::optional<double> capturedShare(const Representation& kept, const Brdf& source,
                                     const std::optional<PairSummary>& pairs = {});
 
+/// The function of whose energy capturedShare is a share: "f", "f cos(theta_i)" or
+/// "f cos(theta_i) cos(theta_o)".
+std::string_view capturedFunction(const Projection& projection);
+std::string_view capturedFunction(const Representation& kept);
+
 /// Plain coefficients, with the advice of better_form.h.
 std::optional<Poor> judge(const Projection& projection, std::optional<double> captured,
                           const std::optional<PictureError>& picture, const Brdf& source,

@@ -222,6 +222,22 @@ TEST_F(Quality, AWindowIsNoInterpolation) {
     EXPECT_GT(window["form"], 3 * window["interpolation"].get<double>());
 }
 
+// Without a cosine the energy of f does not exist, and the share is that of another function.
+TEST_F(Quality, TheEnergyOfACapturedShareIsNamedWhereItIsNotThatOfTheCoefficients) {
+    const auto saidOf = [&](const std::string& options) {
+        return run("project ward:ax=.2,ay=.5 --order 6 --force -o " + path("x.json") + options);
+    };
+    const Answer many = saidOf(" --outgoing 16x16");
+    EXPECT_NE(many.err.find("the energy of f does not exist: "), std::string::npos) << many.err;
+    EXPECT_NE(many.out.find(" of the energy of f cos(theta_i) cos(theta_o) captured"),
+              std::string::npos)
+        << many.out;
+    EXPECT_NE(saidOf(" --outgoing 4x4").out.find(" of the energy of f cos(theta_i) captured"),
+              std::string::npos);
+    EXPECT_NE(saidOf(" --outgoing 4x4 --cosine").out.find(" of the energy captured"),
+              std::string::npos);
+}
+
 // paper_white is five times brighter from 60 to 85 degrees than the other way round.
 TEST_F(Quality, ReciprocalTermsOfAFileThatIsNotReciprocalAreCalledWrong) {
     const std::string paper = test::sharedFolder() + "/data/rgl/paper_white_rgb.bsdf";
