@@ -70,6 +70,7 @@ Json answer(const jobs::LitSurface& lit, const IrradianceArguments& arguments) {
         {"mean_irradiance", lit.meanIrradiance},
         {"normals", arguments.options.normals},
         {"error", errorJson(lit.error)},
+        {"nine", {{"bytes", sizeof(float) * 27}, {"error", errorJson(lit.nineError)}}},
         {"zonal",
          {{"linear", linear},
           {"quadratic", zonal.quadratic},
@@ -102,6 +103,8 @@ std::string text(const jobs::LitSurface& lit, const IrradianceArguments& argumen
     const auto numbers =
         static_cast<std::size_t>(3 * arguments.options.order * arguments.options.order);
     out += errorText(fmt::format("order {}", arguments.options.order).c_str(), numbers, lit.error);
+    // The numbers and shaders below hold three bands.
+    if (arguments.options.order > 3) out += errorText("order 3, as below", 27, lit.nineError);
     out += errorText("zonal order 3", 15, lit.zonalError);
     out += errorText("geomerics order 2", 12, lit.geomericsError);
     out += " l  m  radiance R, G, B                       irradiance R, G, B\n";

@@ -96,13 +96,19 @@ Json answer(const jobs::ProjectedLight& result, const std::string& output) {
     return json;
 }
 
+std::string bandsText(int order) {
+    return order == 1 ? "1 band (1 slot)"
+                      : fmt::format("{} bands ({} slots)", order, order * order);
+}
+
 std::string enoughText(const jobs::ProjectedLight& result) {
     std::string text;
     for (std::size_t k = 0; k < result.enough.size(); ++k) {
         const auto& order = result.enough[k];
         text += fmt::format("  {:>5} % of the energy: {}\n", shareName(jobs::lightShares[k]),
-                            order ? fmt::format("{} bands ({} slots)", *order, *order * *order)
-                                  : fmt::format("more than {} bands", result.light.order));
+                            order ? bandsText(*order)
+                                  : fmt::format("more than {} band{}", result.light.order,
+                                                result.light.order == 1 ? "" : "s"));
     }
     return text;
 }

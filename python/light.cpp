@@ -226,6 +226,7 @@ py::dict irradianceOfSpecs(const py::object& specs, const py::kwargs& keywords) 
     out["factors"] = done.factors;
     out["mean_irradiance"] = done.meanIrradiance;
     out["error"] = errorsDict(done.error);
+    out["nine_error"] = errorsDict(done.nineError);
     for (const Convention* one : done.conventions) {
         py::dict row;
         row["values"] = engineValues(*one, done.radiance);
@@ -265,7 +266,8 @@ Returns a Light.)",
             R"(The irradiance of light by nine coefficients (Ramamoorthi & Hanrahan 2001).
 
 Returns a dict: "radiance" and "irradiance" (9, 3) in the order l(l+1)+m, "error" against direct
-integration ("maximum", "mean", relative to the mean irradiance), and for `convention` (a
+integration ("maximum", "mean", relative to the mean irradiance), "nine_error" likewise of these
+nine coefficients, whatever order is asked for, and for `convention` (a
 name of `hshfit irradiance --convention`, or "all") "engines" with their numbers and shader code.
 `engine` in its place turns the light as that engine's own import of panoramas does.)",
             {{"convention", "Optional[str]"}, {"engine", "Optional[str]"}}},

@@ -122,12 +122,15 @@ LitSurface irradianceOfLight(const std::vector<std::string>& specs,
     result.meanIrradiance = meanOf(direct);
     const Irradiances approximation = byCoefficients(light, normals);
     result.error = errorsOf(normals, direct, approximation);
+    const auto errorOfNine = [&](const NineRgb& nine) {
+        return errorsOf(normals, direct, atNormals(normals, [&](const Direction& normal) {
+                            return evaluateNine(nine, normal);
+                        }));
+    };
+    result.nineError = errorOfNine(result.irradiance);
     const NineRgb source = threeBands(specification.lights, result.radiance, options);
     result.zonal = zonalForm(source);
-    const NineRgb zonal = irradianceOf(nineOf(result.zonal));
-    result.zonalError = errorsOf(normals, direct, atNormals(normals, [&](const Direction& normal) {
-                                     return evaluateNine(zonal, normal);
-                                 }));
+    result.zonalError = errorOfNine(irradianceOf(nineOf(result.zonal)));
     result.geomericsError =
         errorsOf(normals, direct, atNormals(normals, [&](const Direction& normal) {
                      return geomericsIrradiance(source, normal);

@@ -29,6 +29,7 @@ struct LitSurface {
     std::string window;                ///< that was applied
     double meanIrradiance = 0;         ///< over normals and channels, by direct integration
     IrradianceErrors error;            ///< of the order that was asked for
+    IrradianceErrors nineError;        ///< of `irradiance`, which shaders hold
     ZonalForm zonal;                   ///< of three bands, whatever `order` is
     IrradianceErrors zonalError;
     IrradianceErrors geomericsError;        ///< of two bands with the reconstruction of Geomerics

@@ -4,6 +4,7 @@
 #include "places.h"
 #include "program.h"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -414,6 +415,33 @@ TEST_F(Lights, CoefficientsThatAreOffArePoor) {
     EXPECT_EQ(orthonormal.err.find("poor"), std::string::npos) << orthonormal.err;
     EXPECT_LT(Json::parse(orthonormal.out)["error"].get<double>(),
               0.1 * Json::parse(solved.out)["error"].get<double>());
+}
+
+TEST_F(Lights, OneBandIsOne) {
+    const Answer answer = run("light uniform:radiance=1 --order 1 -o " + path("one.json"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_NE(answer.out.find(": 1 band (1 slot)\n"), std::string::npos) << answer.out;
+}
+
+// The numbers and shaders of an answer hold three bands, whatever order is asked for.
+TEST_F(Lights, IrradianceStatesTheErrorOfTheNumbersThatItPrints) {
+    const std::string call = "irradiance sun:elevation=40,irradiance=3 --convention three --order ";
+    const auto answerOf = [&](const std::string& order) {
+        const Answer answer = run(call + order + " --json");
+        EXPECT_EQ(answer.code, 0) << answer.err;
+        EXPECT_TRUE(keepsSchema(answer.out, "irradiance"));
+        return Json::parse(answer.out);
+    };
+    const Json three = answerOf("3"), twenty = answerOf("20");
+    for (std::size_t k = 0; k < 9; ++k)
+        EXPECT_NEAR(three["irradiance"][k][0], twenty["irradiance"][k][0].get<double>(), 1e-9) << k;
+    const double error = three["error"]["maximum"];
+    EXPECT_NEAR(twenty["nine"]["error"]["maximum"], error, 1e-6 * error);
+    EXPECT_LT(twenty["error"]["maximum"], 0.5 * error);
+    // The text has both.
+    const std::string said = fmt::format("error at most {:.2f} %", 100 * error);
+    EXPECT_NE(run(call + "20").out.find("order 3, as below  108 bytes  " + said), std::string::npos)
+        << said;
 }
 
 }  // namespace

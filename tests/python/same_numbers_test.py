@@ -258,6 +258,7 @@ class SameNumbers(program.InFolder):
         expected = self.json_of("irradiance", "sky:type=12,elevation=40")
         self.assertEqual(nine["radiance"].tolist(), expected["radiance"])
         self.assertEqual(nine["error"]["maximum"], expected["error"]["maximum"])
+        self.assertEqual(nine["nine_error"]["maximum"], expected["nine"]["error"]["maximum"])
 
     def test_rotated_coefficients_and_matrices_are_those_of_the_program(self):
         found = hshfit.project("ggx:alpha=0.5", outgoing=4, order=4).coefficients

@@ -58,7 +58,7 @@ double automaticExposure(std::vector<float> largest) {
     const double brightest = *std::max_element(at, largest.end());
     if (!(brightest > 0)) return 0;
     const double shown = std::max(static_cast<double>(*at), firstStep * brightest);
-    return std::round(10 * std::log2(shownAsWhite / shown)) / 10;
+    return std::round(10 * std::log2(shownAsWhite / shown)) / 10 + 0.0;  // -0 is 0
 }
 
 void requireFinite(const std::string& name, std::size_t width, std::span<const float> rgb) {

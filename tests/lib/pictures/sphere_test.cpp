@@ -17,6 +17,7 @@
 #include <cstring>
 #include <limits>
 #include <utility>
+#include <vector>
 
 using namespace hshfit;
 using samples::contentOf;
@@ -285,6 +286,8 @@ TEST(Sphere, AHighlightOnBlackIsNotExposedAtRounding) {
     EXPECT_EQ(encoded(0.4 * shown / 4), 0);
     spot.radiance.assign(300, 0);
     EXPECT_EQ(automaticExposure({&spot, 1}), 0);
+    // A hundredth of a stop below 0 is rounded to 0, not to -0.
+    EXPECT_FALSE(std::signbit(automaticExposure(std::vector<float>{0.8F * 1.007F})));
 }
 
 TEST(Sphere, TheSameWhateverTheThreads) {
