@@ -46,7 +46,8 @@ int run(const std::vector<std::string>& words, Outputs outputs) {
     app.require_subcommand(1);
 
     Globals globals;
-    brdfs::takeSolverLog([&globals](const std::string& said) { note(globals, said); });
+    // A start may fail while others succeed. Results state whether they have settled.
+    brdfs::takeSolverLog([](const std::string&) {});
     std::unique_ptr<tbb::global_control> threadsOfItem;
     app.parse_complete_callback([&] {
         if (globals.json && isOutputTaken())

@@ -4,6 +4,7 @@
 #include <hshfit/stop_request.h>
 
 #include <ceres/ceres.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -256,11 +257,18 @@ void solve(const SumOfSquares& equations, std::span<const double> lower,
     const bool ended = settled.endedByTime();
     const bool level = summary.termination_type == ceres::USER_SUCCESS && !ended;
     result.converged = level || summary.termination_type == ceres::CONVERGENCE;
-    result.message = ended   ? "stopped at the end of the time"
-                     : level ? "The cost fell by less than 1e-7 of itself in 10 iterations."
-                             : summary.message;
     result.iterations += static_cast<int>(summary.iterations.size()) - 1;
     result.evaluations += summary.num_residual_evaluations + summary.num_jacobian_evaluations;
+    if (ended)
+        result.message = "stopped at the end of the time";
+    else if (level)
+        result.message = "The cost fell by less than 1e-7 of itself in 10 iterations.";
+    else if (summary.termination_type == ceres::NO_CONVERGENCE)
+        result.message = fmt::format("the cost still falls after {} iterations", result.iterations);
+    else if (summary.termination_type == ceres::FAILURE)
+        result.message = "no step to finite values was found";
+    else
+        result.message = summary.message;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <string>
 
 namespace {
 
@@ -21,6 +22,14 @@ TEST_F(Cli, FitIsAPresetThatOpens) {
     const std::string at = " --wi 30,10 --wo 40,170";
     EXPECT_NEAR(std::stod(run("eval " + path("fit.json") + at).out.substr(5)),
                 std::stod(run("eval ward:kd=.1,ks=.3,ax=.2,ay=.2" + at).out.substr(5)), 1e-4);
+}
+
+// A start of many fails, and the others do not.
+TEST_F(Cli, FitSpeaksNoWordsOfItsSolver) {
+    const Answer answer = run("fit sgd:alpha=.05/.1/.2,p=.5,F0=.4,kd=.1 --model sgd");
+    EXPECT_EQ(answer.code, 0);
+    for (const char* word : {"Ceres", "Terminating", "Jacobian"})
+        EXPECT_EQ(answer.err.find(word), std::string::npos) << answer.err;
 }
 
 TEST_F(Cli, FitWritesAReportIntoAFolder) {
