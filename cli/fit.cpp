@@ -51,6 +51,27 @@ std::string samplesLine(const Json& fit) {
                        kinds.at(fit["samples_of"]), weights.at(fit["weights"]));
 }
 
+/// The parameters that were not fitted, if `model` states them or they are not at their defaults;
+/// empty where there are none.
+std::string heldLine(const Json& held, const std::string& model) {
+    std::vector<std::string> texts;
+    for (const Json& own : held) {
+        const Json& value = own["value"];
+        const auto name = own["name"].get<std::string>();
+        const bool stated = model.find(name.substr(name.find('.') + 1) + "=") != model.npos;
+        if (own.contains("default") && !stated) continue;
+        if (value.is_string())
+            texts.push_back(fmt::format("{} = {}", name, value.get<std::string>()));
+        else
+            texts.push_back(
+                fmt::format("{} = {:.6g}", name,
+                            fmt::join(value.is_array() ? value.get<std::vector<double>>()
+                                                       : std::vector{value.get<double>()},
+                                      "/")));
+    }
+    return texts.empty() ? "" : fmt::format("  held: {}\n", fmt::join(texts, ", "));
+}
+
 /// The fit in one line: its specification, or its range of wavelengths.
 std::string headLine(const brdfs::FitResult& result) {
     if (result.spectrum.empty()) return withShortNumbers(result.spec) + "\n";
@@ -70,6 +91,7 @@ std::string text(const jobs::Fitted& fitted, const FitArguments& arguments) {
                                       : fmt::format("{:.6g}, not determined by the data", p.value);
         lines += fmt::format("  {:<24} {:>2} {}\n", p.name, p.channel, value);
     }
+    lines += heldLine(fitted.preset["fit"]["held"], arguments.options.model);
     lines += instrumentText(result);
     if (fitted.search) lines += brdfs::textOf(*fitted.search);
     for (const auto& set : result.ambiguous)

@@ -1,4 +1,5 @@
 #include <brdfs/fit/fit_json.h>
+#include <brdfs/fit/held_values.h>
 
 #include <brdfs/fit/budget_json.h>
 #include <brdfs/fit/dispersion_json.h>
@@ -68,6 +69,17 @@ Json spectrumJson(const std::vector<FittedWavelength>& spectrum) {
     return list;
 }
 
+Json heldJson(const FitResult& result, const FitSamples& samples) {
+    Json list = Json::array();
+    for (const HeldValue& held : heldValues(result.model, samples.isotropic)) {
+        Json value = held.numbers.size() == 1 ? Json(held.numbers[0]) : Json(held.numbers);
+        list.push_back({{"name", held.name},
+                        {"value", held.numbers.empty() ? Json(held.word) : std::move(value)}});
+        if (held.isDefault) list.back()["default"] = true;
+    }
+    return list;
+}
+
 }  // namespace
 
 Json fitPreset(const FitReport& report) {
@@ -102,6 +114,7 @@ Json fitPreset(const FitReport& report) {
         {"aic", result.aic},
         {"bic", result.bic},
         {"parameters", parametersJson(result)},
+        {"held", heldJson(result, samples)},
         {"correlations", correlationsJson(result)},
         {"ambiguous", result.ambiguous},
         {"metrics", metricsJson(report)},

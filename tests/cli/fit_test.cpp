@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <map>
 #include <string>
 
 namespace {
@@ -22,6 +23,31 @@ TEST_F(Cli, FitIsAPresetThatOpens) {
     const std::string at = " --wi 30,10 --wo 40,170";
     EXPECT_NEAR(std::stod(run("eval " + path("fit.json") + at).out.substr(5)),
                 std::stod(run("eval ward:kd=.1,ks=.3,ax=.2,ay=.2" + at).out.substr(5)), 1e-4);
+}
+
+// Numbers, colours and words of several terms, as they were stated.
+TEST_F(Cli, FitNamesTheParametersThatItHolds) {
+    const std::string call =
+        "fit ggx:alpha=.3 --samples 200 --starts 2 --accept --model "
+        "'lambert+ggx:masking=separable,F0=.04'";
+    const Answer answer = run(call + " --json");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "fit"));
+    const Json fit = Json::parse(answer.out)["fit"];
+    std::map<std::string, Json> held;
+    for (const Json& own : fit["held"]) held[own["name"]] = own["value"];
+    EXPECT_EQ(held["ggx.masking"], "separable");
+    EXPECT_EQ(held["ggx.F0"], 0.04);
+    // No parameter is both fitted and held.
+    for (const Json& own : fit["parameters"]) EXPECT_FALSE(held.contains(own["name"])) << own;
+    const std::string text = run(call).out;
+    EXPECT_NE(text.find("ggx.F0 = 0.04"), std::string::npos) << text;
+    EXPECT_NE(text.find("ggx.masking = separable"), std::string::npos) << text;
+    const std::string metal =
+        run("fit ggx:alpha=.2,metal=gold,nm=550/650 --model ggx:metal=gold,kd=0").out;
+    EXPECT_NE(metal.find("held: metal = gold, kd = 0\n"), std::string::npos) << metal;
+    const std::string free = run("fit lambert:kd=.3 --model lambert").out;
+    EXPECT_EQ(free.find("held: "), std::string::npos) << free;
 }
 
 // A start of many fails, and the others do not.
