@@ -64,6 +64,7 @@ struct TriedParts {
     FitOptions options = {};
     FitResult result = {};
     std::string stated = {};  ///< PartSearch::stated, of the part that is new
+    HeldOutError heldOut = {};
 };
 
 std::pair<bool, double> lessOf(const TriedParts& own) {
@@ -179,7 +180,8 @@ public:
     void holdOut(TriedParts& own) const {
         if (!own.trial.failure.empty()) return;
         try {
-            own.trial.heldOut = heldOutLoss(samples_, own.result, own.options);
+            own.heldOut = heldOutError(samples_, own.result, own.options);
+            own.trial.heldOut = own.heldOut.loss;
         } catch (const NumericError& error) {
             own.trial.failure = error.what();
         }
@@ -344,8 +346,11 @@ PartSearch chooseParts(const FitSamples& all, const FitOptions& fit, const PartO
     const auto isWorthIt = [&](TriedParts& own) {
         if (!own.trial.failure.empty() || own.trial.loss > least * current.trial.loss) return false;
         if (!pixels) trials.holdOut(own);
+        // A few samples of a peak may rule both errors, so that parts fit their noise.
+        const bool measured = samples.origin == SampleOrigin::measured;
         own.trial.taken =
-            pixels || (own.trial.heldOut && *own.trial.heldOut <= least * *current.trial.heldOut);
+            pixels || (own.trial.heldOut && *own.trial.heldOut <= least * *current.trial.heldOut &&
+                       (!measured || differ(own.heldOut, current.heldOut)));
         return own.trial.taken;
     };
     // Films last: they are tried where the others leave colours that change with the directions.

@@ -70,7 +70,8 @@ struct PartOptions {
 };
 
 /// Adds the part that lowers the loss most among those that lower the held-out loss
-/// (compare_models.h), or of pixels the loss itself, by `leastGain`, again and again. Each fit
+/// (compare_models.h), or of pixels the loss itself, by `leastGain`, again and again. Of measured
+/// samples, held-out losses have to differ by more than their spread over rings explains. Each fit
 /// starts at the one without the part, a film's at as many thicknesses as `fit` has starts. Parts
 /// whose parameters are all held or stated are not tried. Then each parameter but the base's
 /// colours is held at its default unless it lowers the loss by `leastGain`: the data do not decide

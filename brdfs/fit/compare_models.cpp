@@ -96,7 +96,7 @@ HeldOut heldOutOf(const FitSamples& samples, const Folds& folds, const FitResult
     options.contributions.clear();
     double squares = 0, weights = 0;
     HeldOut heldOut;
-    if (stated(samples)) heldOut.squares.assign(samples.size(), 0);
+    heldOut.squares.assign(samples.size(), 0);
     for (const std::vector<std::size_t>& fold : folds) {
         if (fold.empty()) continue;
         FitSamples rest = without(samples, fold);
@@ -114,27 +114,19 @@ HeldOut heldOutOf(const FitSamples& samples, const Folds& folds, const FitResult
         const double loss = lossOf(predicted, held, options.loss);
         squares += weight * loss * loss;
         weights += weight;
-        if (stated(samples)) addSquares(predicted, held, options.loss, fold, heldOut);
+        addSquares(predicted, held, options.loss, fold, heldOut);
     }
     heldOut.loss = std::sqrt(squares / weights);
     return heldOut;
 }
 
-/// Whether two models' squared residuals differ by no more than their spread over groups explains.
-bool areTied(const HeldOut& best, const HeldOut& other, const Groups& groups) {
-    if (groups.size() < 2) return false;
-    const double count = static_cast<double>(groups.size());
-    std::vector<double> differences;
-    double mean = 0, spread = 0;
+HeldOutError errorOf(const HeldOut& heldOut, const Groups& groups) {
+    HeldOutError error{.loss = heldOut.loss, .squares = {}};
     for (const auto& [place, members] : groups) {
-        differences.push_back(0);
-        for (const std::size_t k : members)
-            differences.back() += other.squares[k] - best.squares[k];
-        mean += differences.back() / count;
+        error.squares.push_back(0);
+        for (const std::size_t k : members) error.squares.back() += heldOut.squares[k];
     }
-    for (const double difference : differences) spread += (difference - mean) * (difference - mean);
-    const double error = std::sqrt(spread / (count * (count - 1)));
-    return std::abs(mean) <= studentBound(0.05, count - 1) * error;
+    return error;
 }
 
 }  // namespace
@@ -151,8 +143,24 @@ std::vector<double> shapesOf(const FitResult& fit, const FitOptions& options,
     return {values.begin(), values.begin() + count};
 }
 
-double heldOutLoss(const FitSamples& samples, const FitResult& whole, const FitOptions& options) {
-    return heldOutOf(samples, foldsOf(samples, groupsOf(samples)), whole, options).loss;
+HeldOutError heldOutError(const FitSamples& samples, const FitResult& whole,
+                          const FitOptions& options) {
+    const Groups groups = groupsOf(samples);
+    return errorOf(heldOutOf(samples, foldsOf(samples, groups), whole, options), groups);
+}
+
+bool differ(const HeldOutError& a, const HeldOutError& b) {
+    if (a.squares.size() < 2) return true;
+    const double count = static_cast<double>(a.squares.size());
+    std::vector<double> differences;
+    double mean = 0, spread = 0;
+    for (std::size_t k = 0; k < a.squares.size(); ++k) {
+        differences.push_back(b.squares[k] - a.squares[k]);
+        mean += differences.back() / count;
+    }
+    for (const double difference : differences) spread += (difference - mean) * (difference - mean);
+    const double error = std::sqrt(spread / (count * (count - 1)));
+    return std::abs(mean) > studentBound(0.05, count - 1) * error;
 }
 
 std::vector<ModelRank> compareModels(const FitSamples& samples, std::span<const std::string> models,
@@ -162,13 +170,13 @@ std::vector<ModelRank> compareModels(const FitSamples& samples, std::span<const 
     const Groups groups = groupsOf(samples);
     const Folds folds = foldsOf(samples, groups);
     std::vector<ModelRank> ranks;
-    std::vector<HeldOut> heldOut;
+    std::vector<HeldOutError> heldOut;
     for (const std::string& model : models) {
         ModelRank rank{.model = model, .fit = {}, .failure = {}};
         options.model = model;
         try {
             rank.fit = fit(samples, options);
-            heldOut.push_back(heldOutOf(samples, folds, rank.fit, options));
+            heldOut.push_back(errorOf(heldOutOf(samples, folds, rank.fit, options), groups));
             rank.heldOut = heldOut.back().loss;
         } catch (const NumericError& error) {
             rank.failure = error.what();
@@ -177,11 +185,11 @@ std::vector<ModelRank> compareModels(const FitSamples& samples, std::span<const 
     }
     std::string least;
     if (stated(samples) && !heldOut.empty()) {
-        const auto best = std::ranges::min_element(heldOut, {}, &HeldOut::loss);
+        const auto best = std::ranges::min_element(heldOut, {}, &HeldOutError::loss);
         auto own = heldOut.begin();
         for (ModelRank& rank : ranks)
             if (rank.failure.empty()) {
-                rank.tied = own == best || areTied(*best, *own, groups);
+                rank.tied = own == best || !differ(*best, *own);
                 if (own == best) least = rank.model;
                 ++own;
             }

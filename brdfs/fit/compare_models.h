@@ -32,8 +32,17 @@ struct ModelRank {
 std::vector<ModelRank> compareModels(const FitSamples& samples, std::span<const std::string> models,
                                      FitOptions options);
 
-/// ModelRank::heldOut of one fit to all samples, by which the others start.
-double heldOutLoss(const FitSamples& samples, const FitResult& whole, const FitOptions& options);
+/// ModelRank::heldOut, and the sums of squared residuals in each ring (or scan).
+struct HeldOutError {
+    double loss = 0;
+    std::vector<double> squares;
+};
+/// Of one fit to all samples, by which the others start.
+HeldOutError heldOutError(const FitSamples& samples, const FitResult& whole,
+                          const FitOptions& options);
+/// Whether squared residuals at the same samples differ by more than their spread over rings
+/// explains (Student's t, 5 %). Of fewer than two rings there is no spread: they do.
+bool differ(const HeldOutError& a, const HeldOutError& b);
 
 /// The values of the shapes of a fit in which channels share them, in the order of
 /// FitOptions::from; empty for others, and without shapes.

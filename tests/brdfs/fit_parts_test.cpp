@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <random>
 #include <string>
@@ -49,7 +50,7 @@ TEST(ChooseParts, TakesThePartThatIsThereAndNoOther) {
         EXPECT_LT(trial.loss, 1.001 * before.loss);
         if (trial.heldOut) {
             EXPECT_LE(trial.loss, least * before.loss);
-            EXPECT_EQ(trial.taken, *trial.heldOut <= least * *before.heldOut);
+            EXPECT_TRUE(!trial.taken || *trial.heldOut <= least * *before.heldOut);
         }
     }
 }
@@ -64,6 +65,45 @@ TEST(ChooseParts, TakesNoneWhereThereIsNone) {
         EXPECT_GT(search.trials[k].loss, 0);
     }
     EXPECT_EQ(textOf(search).find("taken"), textOf(search).rfind("taken"));
+}
+
+/// Pairs of directions with f and noise in proportion to it; a third lies about the mirror
+/// direction, where f is a hundred times larger.
+FitSamples scatteredSamples(const Brdf& brdf, double noise, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    constexpr std::size_t count = 1500;
+    FitSamples samples;
+    samples.isotropic = true;
+    samples.origin = SampleOrigin::measured;
+    for (std::size_t k = 0; k < count; ++k) {
+        const double theta = std::acos(1 - 0.9 * test::uniform(random));
+        double other = std::acos(1 - 0.9 * test::uniform(random));
+        double turn = 2 * pi * test::uniform(random);
+        if (k % 3 == 0) {
+            other = std::clamp(theta + 0.14 * test::normal(random), 0.0, 1.46);
+            turn = pi + 0.17 * test::normal(random);
+        }
+        const Direction wi = directionFromAngles(theta, 0), wo = directionFromAngles(other, turn);
+        samples.wiX.push_back(wi.x);
+        samples.wiY.push_back(wi.y);
+        samples.wiZ.push_back(wi.z);
+        samples.wo.push_back(wo);
+        samples.values.push_back(evaluate(brdf, wi, wo).front() *
+                                 (1 + noise * test::normal(random)));
+    }
+    samples.weights.assign(count, 1);
+    return samples;
+}
+
+// Least squares of f hang on some dozens of samples about the peak, whose noise a coat takes on.
+TEST(ChooseParts, TakesNoneForTheNoiseOfBrightSamples) {
+    const auto brdf = open("openpbr");
+    FitOptions options{.model = "openpbr"};
+    options.loss = Loss::Kind::cosine;
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        const PartSearch search = chooseParts(scatteredSamples(*brdf, 0.02, seed), options);
+        EXPECT_TRUE(search.parts.empty()) << "seed " << seed << "\n" << textOf(search);
+    }
 }
 
 // A coat of the standard's index, and one of another, seen through noise.
