@@ -1,6 +1,7 @@
 #include "export_material.h"
 
 #include "preview_surface.h"
+#include "sheen_colour.h"
 
 #include <jobs/fits/fit.h>
 #include <jobs/source/picture.h>
@@ -18,6 +19,7 @@
 #include <hshfit/meshes/mesh_file.h>
 #include <hshfit/pages/picture_error_json.h>
 #include <hshfit/pictures/picture_strips.h>
+#include <hshfit/pictures/poor.h>
 #include <hshfit/wording.h>
 
 #include <brdfs/catalog.h>
@@ -228,11 +230,21 @@ std::vector<PreviewModel> modelsFor(const std::string& target, const Input& inpu
     return {{wantedModel(target, input), parts}};
 }
 
+/// The reason that a material whose sheen was given colours is poor, if it still is.
+void restatePoor(ExportedMaterial& material) {
+    const auto reason = poorReason(1 - material.loss->energyLeft.value, material.picture);
+    if (reason)
+        material.poor->reason = *reason;
+    else
+        material.poor.reset();
+}
+
 /// The material of a target: the input itself, or a fit to it.
 ExportedMaterial materialFor(const std::string& target, const Input& input,
                              const MaterialExportOptions& options, const Listener& listener) {
     ExportedMaterial material;
     material.target = target;
+    bool coloured = false;
     if (holds(target, input)) {
         material.spec = input.spec;
     } else {
@@ -254,6 +266,11 @@ ExportedMaterial materialFor(const std::string& target, const Input& input,
         material.converged = best->result.converged;
         material.search = best->search;
         material.poor = best->poor;
+        if (target == "gltf") {
+            std::string spec = withColouredSheen(material.spec, *openBrdf(input.fitTo, true));
+            coloured = spec != material.spec;
+            material.spec = std::move(spec);
+        }
     }
     if (!input.brdf) {
         material.reason = input.reason;
@@ -265,6 +282,7 @@ ExportedMaterial materialFor(const std::string& target, const Input& input,
     else {
         material.loss = summaryOf(*input.brdf, *own);
         material.picture = pictureErrorOf(*input.brdf, *own);
+        if (material.poor && coloured) restatePoor(material);
     }
     return material;
 }

@@ -45,6 +45,30 @@ bool isPng(const std::string& bytes, std::uint32_t width, std::uint32_t height) 
     return big(16) == width && big(20) == height;
 }
 
+// The fit's sheen is grey; the source's is red over a blue base.
+TEST_F(Cli, GltfHasTheColoursOfAFittedSheen) {
+    const std::string spec = "openpbr:base_color=.2/.1/.4,fuzz_weight=.8,fuzz_color=.7/.1/.1";
+    const Answer answer =
+        run("export " + spec + " --target gltf --name fuzz --json -o " + path("out"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "export_materials"));
+    const Json material = jsonOf(read(path("out/fuzz.glb")))["materials"][0];
+    const Json sheen = material["extensions"]["KHR_materials_sheen"]["sheenColorFactor"];
+    EXPECT_GT(sheen[0].get<double>(), 2 * sheen[1].get<double>()) << sheen;
+    EXPECT_GT(sheen[0].get<double>(), 2 * sheen[2].get<double>()) << sheen;
+    // By another measure than the loss of the search, it is nearer to the source than the fit.
+    const auto distanceOf = [&](const Json& own) {
+        const Answer compared =
+            run("compare " + spec + " " + own["spec"].get<std::string>() + " --json");
+        EXPECT_EQ(compared.code, 0) << compared.err;
+        return Json::parse(compared.out)["picture"]["ciede2000"]["mean"].get<double>();
+    };
+    const Answer fitted = run("fit " + spec + " --model gltf-pbr --accept --json");
+    ASSERT_EQ(fitted.code, 0) << fitted.err;
+    EXPECT_LT(distanceOf(Json::parse(answer.out)["files"][0]),
+              0.8 * distanceOf(Json::parse(fitted.out)));
+}
+
 TEST_F(Cli, GltfHasTheParametersThatAreGiven) {
     const Answer answer = run(
         "export gltf-pbr:baseColorFactor=.9/.5/.1,metallicFactor=.25,roughnessFactor=.4,ior=1.7,"
