@@ -28,7 +28,6 @@ std::vector<std::size_t> paretoFront(std::span<const double> costs,
 std::optional<std::size_t> kneeOf(std::span<const std::size_t> front, std::span<const double> costs,
                                   std::span<const double> errors) {
     if (front.empty()) return std::nullopt;
-    if (front.size() < 3) return front.front();
     double least = std::numeric_limits<double>::infinity();
     for (const std::size_t k : front) {
         if (errors[k] > 0) least = std::min(least, errors[k]);
@@ -37,8 +36,8 @@ std::optional<std::size_t> kneeOf(std::span<const std::size_t> front, std::span<
     const auto y = [&](std::size_t k) { return std::log(std::max(errors[k], least / 1000)); };
     const double left = x(front.front()), width = x(front.back()) - left;
     const double top = y(front.front()), height = top - y(front.back());
-    std::size_t best = front.front();
-    double depth = -1;
+    std::size_t best = front.back();
+    double depth = 1e-9;  // the ends of the front are on the line, within rounding
     for (const std::size_t k : front) {
         const double below = (top - y(k)) / height - (x(k) - left) / width;
         if (below > depth) {

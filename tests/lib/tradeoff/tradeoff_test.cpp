@@ -119,6 +119,19 @@ TEST(Front, KneeIsWhereTheSlopeChanges) {
     EXPECT_EQ(kneeOf(front, costs, errors), std::size_t{6});
 }
 
+TEST(Front, KneeIsNoPointAboveTheLineBetweenTheEnds) {
+    // Errors hardly fall at first, and steeply at the end: the cheapest forms are far from the
+    // best.
+    const std::vector<double> costs{18, 100, 427, 600}, errors{0.0608, 0.0405, 1.6e-4, 7.5e-5};
+    const auto front = paretoFront(costs, errors);
+    ASSERT_EQ(front.size(), costs.size());
+    EXPECT_EQ(kneeOf(front, costs, errors), std::size_t{3});
+    const std::vector<std::size_t> two{0, 3};
+    EXPECT_EQ(kneeOf(two, costs, errors), std::size_t{3});
+    const std::vector<std::size_t> one{1};
+    EXPECT_EQ(kneeOf(one, costs, errors), std::size_t{1});
+}
+
 TEST(Pairs, AreUnitVectorsAboveTheHorizonWhoseWeightsAddUp) {
     const PairSample pairs = spreadPairs();
     ASSERT_EQ(pairs.first.size(), pairs.wo.size() + 1);
