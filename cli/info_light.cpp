@@ -172,6 +172,7 @@ Json lightAnswer(const std::string& spec, const jobs::LightInfo& info) {
                                 {"negative_share", health.negativeShare},
                                 {"least_negative", health.leastNegative},
                                 {"clipped_by_half", health.clippedByHalf},
+                                {"black_in_half", health.blackInHalf},
                                 {"invalid",
                                  {{"negative", health.invalid.negative},
                                   {"nan", health.invalid.notANumber},
@@ -191,8 +192,10 @@ std::string lightText(const Json& document) {
     out += factLine("flux in the brightest 0.1 % of the sphere",
                     fmt::format("{:.3g} %", 100 * health["brightest_share"].get<double>()));
     const Json& range = health["dynamic_range"];
-    out += factLine("dynamic range",
-                    range.is_null() ? "infinite" : fmt::format("{:.3g} : 1", range.get<double>()));
+    if (range != 0)
+        out +=
+            factLine("dynamic range",
+                     range.is_null() ? "infinite" : fmt::format("{:.3g} : 1", range.get<double>()));
     if (health["black_share"] > 0)
         out += factLine("black", fmt::format("{:.3g} % of the sphere",
                                              100 * health["black_share"].get<double>()));
@@ -200,7 +203,9 @@ std::string lightText(const Json& document) {
         out += factLine("below 0", fmt::format("{:.3g} % of the sphere, down to {:.3g}",
                                                100 * health["negative_share"].get<double>(),
                                                health["least_negative"].get<double>()));
-    out += factLine("fits a 16-bit float", health["clipped_by_half"] ? "no: above 65504" : "yes");
+    out += factLine("fits a 16-bit float", health["clipped_by_half"] ? "no: above 65504"
+                                           : health["black_in_half"] ? "no: all of it rounds to 0"
+                                                                     : "yes");
     const Json& lights = document["lights"];
     const Json& invalid = health["invalid"];
     if (std::ranges::any_of(lights, [](const Json& light) { return light["kind"] == "picture"; }))

@@ -107,6 +107,22 @@ TEST_F(Lights, RingingOfCoefficientsIsBelow0AndNotBlack) {
     EXPECT_NE(text.find("% of the sphere, down to -"), std::string::npos) << text;
     EXPECT_EQ(text.find("black"), std::string::npos) << text;
     EXPECT_EQ(text.find("pixels below 0"), std::string::npos) << text;
+    // The least value above 0 on a grid is an accident where radiance goes through 0.
+    EXPECT_EQ(health["dynamic_range"], 0);
+    EXPECT_EQ(text.find("dynamic range"), std::string::npos) << text;
+}
+
+TEST_F(Lights, RadianceThatHalfFloatsTurnTo0DoesNotFitThem) {
+    for (const double value : {1e-40, 1e-7, 1.0, 1e5}) {
+        const std::vector<float> rgb(3 * 64 * 32, static_cast<float>(value));
+        const std::string file = pfm("dark.pfm", 64, 32, rgb);
+        const Json health = info(file)["light_health"];
+        EXPECT_EQ(health["black_in_half"], value < 0x1p-25) << value;
+        EXPECT_EQ(health["clipped_by_half"], value > 65504) << value;
+        const bool fits = value > 0x1p-25 && value < 65504;
+        const std::string text = run("info " + file).out;
+        EXPECT_EQ(text.find("fits a 16-bit float          yes") != std::string::npos, fits) << text;
+    }
 }
 
 TEST_F(Lights, PicturesHaveTheHealthOfTheirPixels) {

@@ -10,7 +10,7 @@
 namespace hshfit::inline light {
 namespace {
 
-constexpr double largestHalf = 65504;
+constexpr double largestHalf = 65504, blackHalf = 0x1p-25;
 constexpr double brightestPart = 1e-3 * 4 * pi;
 constexpr double narrowShape = 4 * (pi / 180);  ///< from side to side of a shape beside the grid
 /// Parts of a pixel on the edge of a shape, in each direction.
@@ -145,11 +145,12 @@ public:
         // The used area of a disc is cut off at pixels, so that it is the sphere but for a little.
         for (std::size_t c = 0; c < 3; ++c) health_.mean[c] = flux_[c] / (4 * pi);
         health_.brightestShare = total > 0 ? classes_.fluxOfBrightest(brightestPart) / total : 0;
-        health_.dynamicRange = total > 0 ? sumOf(health_.peak) / least_ : 0;
+        health_.dynamicRange = total > 0 && negative_ == 0 ? sumOf(health_.peak) / least_ : 0;
         health_.blackShare = solidAngle_ > 0 ? black_ / solidAngle_ : 0;
         health_.negativeShare = solidAngle_ > 0 ? negative_ / solidAngle_ : 0;
         health_.aboveHalf = largest_ / largestHalf;
         health_.clippedByHalf = largest_ > largestHalf;
+        health_.blackInHalf = largest_ > 0 && largest_ <= blackHalf;
         return health_;
     }
 

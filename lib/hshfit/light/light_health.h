@@ -20,14 +20,16 @@ struct LightHealth {
     Direction peakDirection{};
     /// The share of the flux, all channels, in the brightest 0.1 % of the sphere, within 1 %.
     double brightestShare = 0;
-    /// Largest over smallest sum of components, of pixels above 0; 0 for darkness.
+    /// Largest over smallest sum of components, of pixels above 0; 0 for darkness, and where
+    /// radiance goes below 0: its least value above 0 then depends on the grid alone.
     double dynamicRange = 0;
     double blackShare = 0;  ///< of the sphere
     /// The share of the sphere with a component below 0, as sums of harmonics have it beside sharp
     /// lights, and the least component there. `mean` and `brightestShare` count it as it is.
     double negativeShare = 0, leastNegative = 0;
-    double aboveHalf = 0;  ///< largest component over 65504, the largest of a 16-bit float
-    bool clippedByHalf = false;
+    double aboveHalf = 0;        ///< largest component over 65504, the largest of a 16-bit float
+    bool clippedByHalf = false;  ///< a component is above that
+    bool blackInHalf = false;    ///< all light is below 2^-25, which a 16-bit float holds as 0
     PictureCensus invalid = {};  ///< in the files of all pictures; these count as 0
 };
 
