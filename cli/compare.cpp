@@ -57,9 +57,11 @@ Json answer(const jobs::Compared& compared, const CompareArguments& arguments) {
     return document;
 }
 
-/// The text with BRDFs named as they were given, whose own names may state forty parameters.
+/// The text with BRDFs named as they were given, whose own names may state forty parameters. A file
+/// of coefficients has the name of its source: where both have one name, the text keeps it.
 std::string asGiven(std::string text, const jobs::Compared& compared,
                     const CompareArguments& arguments) {
+    if (compared.a == compared.b) return text;
     for (const auto& [name, given] :
          {std::pair{&compared.b, &arguments.others[0]}, std::pair{&compared.a, &arguments.a}}) {
         if (given->size() >= name->size()) continue;

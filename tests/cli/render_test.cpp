@@ -268,6 +268,14 @@ TEST_F(Cli, CompareNamesAPresetAsItIsGivenAndStatesAReasonOnce) {
     EXPECT_NE(answer.out.find("(as relative-l2)"), std::string::npos) << answer.out;
 }
 
+TEST_F(Cli, CompareBlamesTheModelAndNotItsCoefficientsOfTheSameName) {
+    // f grows like cos^-1/2 towards the horizon; coefficients are bounded.
+    const std::string model = "ward:ax=0.25,ay=0.25";
+    ASSERT_EQ(run("project " + model + " --order 4 --outgoing 4 -o " + path("w.json")).code, 0);
+    const Answer answer = run("compare " + model + " " + path("w.json") + " --metrics relative-l2");
+    EXPECT_NE(answer.out.find("(" + model + " grows like"), std::string::npos) << answer.out;
+}
+
 TEST_F(Cli, CompareFailsBeforeItWrites) {
     write("file", "x");
     const std::string job = "compare lambert lambert:kd=.5 --outgoing 2 -o ";
