@@ -26,13 +26,15 @@ std::string percent(double fraction) {
     return fmt::format("{:g} %", 100 * fraction);
 }
 
-/// Enough digits to show the missing part: 98.7 %, 99.9987 %; never rounded up to 100 %.
+/// Enough digits to show the missing part: 98.7 %, 99.9987 %; never rounded up, so that what is
+/// below a threshold reads as below it.
 std::string accuracyText(const std::optional<double>& accuracy) {
     if (!accuracy) return "–";
     const double missing = 1 - *accuracy;
     if (missing < 5e-9) return "100 %";
     const int digits = std::clamp(static_cast<int>(1 - std::floor(std::log10(missing)) - 1), 1, 8);
-    return fmt::format("{:.{}f} %", 100 * *accuracy, digits);
+    const double scale = std::pow(10, digits);
+    return fmt::format("{:.{}f} %", std::floor(100 * *accuracy * scale) / scale, digits);
 }
 
 /// Whether the numbers of coefficients of a curve compare with other curves': they have the same
