@@ -195,6 +195,11 @@ std::vector<Projection> project(const Brdf& brdf, std::span<const Basis* const> 
             "{} is anisotropic: outgoing elevations alone do not describe it; give a map (32x32)",
             brdf.name()));
     }
+    if (!(options.tolerance >= 0 && options.tolerance <= 1))
+        throw UsageError(
+            fmt::format("the tolerance is {}, expected 0, for the default of the BRDF, "
+                        "or a number up to 1",
+                        options.tolerance));
     const double tolerance = options.tolerance > 0 ? options.tolerance : brdf.defaultTolerance();
     ProjectionOptions counted = options;
     if (options.progress) {

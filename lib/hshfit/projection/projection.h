@@ -43,7 +43,7 @@ struct Projection {
 ///
 /// Throws NumericError where the coefficients do not exist or do not converge, or where f is not
 /// finite; an energy alone that does not exist is reported in `coefficients.energy`.
-/// UsageError: an elevation set for an anisotropic BRDF.
+/// UsageError: an elevation set for an anisotropic BRDF; a tolerance below 0, above 1 or NaN.
 std::vector<Projection> project(const Brdf& brdf, std::span<const Basis* const> bases,
                                 const OutgoingSet& outgoing, const ProjectionOptions& options = {});
 

@@ -1,6 +1,7 @@
 // One basis of a projection, and the share of the energy that it captures.
 
 #include <hshfit/bases/catalog.h>
+#include <hshfit/error.h>
 #include <hshfit/projection/one_basis.h>
 
 #include <lib/formula_brdf.h>
@@ -49,6 +50,16 @@ TEST(OneBasis, HasNoShareOfAnEnergyThatDoesNotExistOrIsZero) {
     EXPECT_FALSE(capturedShare(projected(steep, "hsh", 3)));
     const test::FormulaBrdf black([](const Direction&, const Direction&) { return 0.0; });
     EXPECT_FALSE(capturedShare(projected(black, "hsh", 3)));
+}
+
+TEST(OneBasis, RefusesTolerancesThatAreNone) {
+    const test::FormulaBrdf cosine([](const Direction& wi, const Direction&) { return wi.z; });
+    const auto basis = bases::make("hsh", 2);
+    for (const double tolerance : {-1.0, -1e-9, 1.5, HUGE_VAL, std::nan("")})
+        EXPECT_THROW(project(cosine, *basis, OutgoingSet::elevations(4), {.tolerance = tolerance}),
+                     UsageError)
+            << tolerance;
+    EXPECT_NO_THROW(project(cosine, *basis, OutgoingSet::elevations(4), {.tolerance = 0}));
 }
 
 TEST(OneBasis, HasNoShareOfLeastSquares) {
