@@ -89,6 +89,8 @@ TEST_F(Import, ErrorsAreOneLineAndLeaveNothing) {
     const std::string to = " -o " + path("x.json");
     expectError("import " + path("other.json") + to, 3, "is no file of an export", 5);
     expectError("import " + path("ward.json") + to, 3, "is no file of an export", 5);
+    write("map.hsh.json", R"({"format": "hshfit-gpu-map"})");
+    expectError("import " + path("map.hsh.json") + to, 3, "in the format hshfit-gpu-map", 5);
     expectError("import " + path("broken.ktx2") + to, 3, "broken.ktx2", 5);
     expectError("import " + path("absent.ktx2") + to, 3, "absent.ktx2", 5);
     expectError("import " + path("out/ward.coef.ktx2") + " -o " + path("x.txt"), 2, ".json", 5);

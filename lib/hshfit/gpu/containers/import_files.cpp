@@ -201,6 +201,12 @@ LoadedTexels loadTexels(const std::string& path) {
             fmt::format("{}: a .{} needs its sidecar beside it, NAME.hsh.json for NAME.coef.{}",
                         path, container->name, container->name));
     }
+    const std::string format = jsonFormat(bytes);
+    if (format.starts_with("hshfit-gpu-"))
+        throw InputError(fmt::format(
+            "{}: is the sidecar of an export in the format {}; exports of one material as "
+            "coefficients are read back, of the format hshfit-gpu",
+            path, format));
     throw InputError(fmt::format(
         "{}: is no file of an export; those are sidecars (NAME.hsh.json) and what they list",
         path));
