@@ -50,6 +50,8 @@ void draw(const std::vector<PrintFigure>& figures, const FigureOptions& options,
     result.undrawn = std::move(added.undrawn);
     result.font = std::move(added.font);
     result.svgs = std::move(added.svgs);
+    for (const PrintFigure& figure : figures)
+        result.columns.push_back(figureColumns(figure, options.style));
 }
 
 }  // namespace
@@ -155,6 +157,8 @@ std::vector<PrintFigure> pageFigures(const brdfs::FitReport& report, const Figur
     append(brdfs::correlationFigure(report.result), figures);
     append(brdfs::influenceFigure(report.result), figures);
     append(brdfs::spectrumFigure(report.result, plotted.samples().channels), figures);
+    // Narrow pages show the columns below one another: each panel needs its own ticks.
+    for (PrintFigure& figure : figures) figure.shared = false;
     return figures;
 }
 

@@ -49,6 +49,7 @@ struct FigureFiles {
     std::string font = {};  ///< AddedFigures
     std::optional<std::string> undrawn = {};
     std::vector<std::string> svgs = {};  ///< documents of the .svg among `names`, in their order
+    std::vector<std::vector<int>> columns = {};  ///< figureColumns of each
 };
 
 /// The figures of a fit, with bands of 95 %, under temporary names in `files` until it is

@@ -61,13 +61,25 @@ data pairsOf(const NamedTexts& pairs) {
     return list;
 }
 
-/// A list of one table, or of none without rows.
+/// A list of one table, or of none without rows. Each cell has the head of its column, which narrow
+/// pages show beside it.
 data tableOf(const TextTable& table) {
     data list{data::type::list};
     if (table.rows.empty()) return list;
     data fields, rows{data::type::list};
     fields.set("heads", textsOf(table.heads));
-    for (const auto& row : table.rows) rows.push_back(data("cells", textsOf(row)));
+    for (const auto& row : table.rows) {
+        data cells{data::type::list}, own;
+        for (std::size_t c = 1; c < row.size(); ++c) {
+            data cell;
+            cell.set("label", table.heads[c]);
+            cell.set("text", row[c]);
+            cells.push_back(cell);
+        }
+        own.set("first", row.front());
+        own.set("cells", cells);
+        rows.push_back(own);
+    }
     fields.set("rows", rows);
     list.push_back(fields);
     return list;
@@ -75,10 +87,9 @@ data tableOf(const TextTable& table) {
 
 /// The drawn figures that have a caption, in the order of the captions.
 data figuresOf(const FigureFiles& drawn) {
-    std::map<std::string, const std::string*> svgs;
-    std::size_t place = 0;
+    std::map<std::string, std::size_t> svgs;
     for (const std::string& name : drawn.names)
-        if (name.ends_with(".svg")) svgs[name] = &drawn.svgs.at(place++);
+        if (name.ends_with(".svg")) svgs.emplace(name, svgs.size());
     data list{data::type::list};
     std::size_t index = firstFigure;
     for (const Caption& caption : captions) {
@@ -89,7 +100,8 @@ data figuresOf(const FigureFiles& drawn) {
         fields.set("title", std::string(caption.title));
         fields.set("kind", std::string(caption.kind));
         fields.set("caption", std::string(caption.text));
-        fields.set("svg", inlinedFigure(*svg->second, ++index));
+        fields.set("svg", inlinedFigure(drawn.svgs.at(svg->second), ++index,
+                                        drawn.columns.at(svg->second)));
         list.push_back(fields);
     }
     return list;

@@ -26,6 +26,9 @@ namespace {
 
 using kainjow::mustache::data;
 
+/// Characters of a name that has a cell of its own.
+constexpr std::size_t longestName = 2000;
+
 std::string directionText(const Direction& d) {
     return fmt::format("θ {:.1f}°, φ {:.1f}°", degrees(polarAngle(d)), degrees(azimuth(d)));
 }
@@ -46,7 +49,7 @@ std::string channelsText(const Channels& channels) {
 
 data sideData(const ComparedBrdf& side, const SpherePicture& sphere) {
     data fields;
-    fields.set("name", side.name);
+    fields.set("name", shortName(side.name, longestName));
     fields.set("channels", channelsText(side.channels));
     fields.set("laws", lawsText(side.laws));
     fields.set("colours", sphere.colours);
@@ -66,7 +69,7 @@ data metricRows(const std::vector<MetricValue>& metrics) {
             row.set("value", fmt::format("{:.5g}", *result.value));
             row.set("error", fmt::format("{:.1e}", result.error));
         } else {
-            row.set("reason", result.reason);
+            row.set("reason", shortName(result.reason, longestName));
         }
         std::string where;
         if (result.wi) where += "ωi " + directionText(*result.wi) + "; ";
@@ -93,8 +96,8 @@ data residualData(const Comparison& comparison) {
 
 /// The left ends of the columns of panels, as comparison.gp places them.
 std::span<const int> columnsOfKind(std::string_view kind) {
-    static constexpr std::array polar{0, 550}, residual{0, 560};
-    static constexpr std::array half{0, 365, 725};
+    static constexpr std::array polar{0, 550}, residual{0, 633};
+    static constexpr std::array half{0, 371, 731};
     if (kind == "polar") return polar;
     return kind == "half" ? std::span<const int>(half) : residual;
 }

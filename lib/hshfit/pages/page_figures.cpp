@@ -21,9 +21,10 @@ std::string fileContent(const std::string& path) {
 
 namespace {
 
-/// The columns as documents of their own, which show the elements of the whole one in `<g>`.
+/// The columns as documents of their own, which show the elements of the whole one in `<g>`, at
+/// most `unit` pixels for each unit.
 std::string columnsOf(const std::string& tag, std::span<const int> columns,
-                      const std::string& group) {
+                      const std::string& group, double unit) {
     std::smatch box;
     if (!std::regex_search(tag, box, std::regex(R"re(viewBox="0 0 (\d+) (\d+)")re"))) return {};
     const int width = std::stoi(box[1]);
@@ -31,9 +32,10 @@ std::string columnsOf(const std::string& tag, std::span<const int> columns,
     for (std::size_t i = 0; i < columns.size(); ++i) {
         const int end = i + 1 < columns.size() ? columns[i + 1] : width;
         parts += fmt::format(
-            "\n<svg class=\"part\" aria-hidden=\"true\" viewBox=\"{} 0 {} {}\">"
-            "<use href=\"#{}\"/></svg>",
-            columns[i], end - columns[i], box[2].str(), group);
+            "\n<svg class=\"part\" aria-hidden=\"true\" style=\"max-width:{:.0f}px\" "
+            "preserveAspectRatio=\"xMinYMin slice\" viewBox=\"{} 0 {} {}\"><use "
+            "href=\"#{}\"/></svg>",
+            unit * (end - columns[i]), columns[i], end - columns[i], box[2].str(), group);
     }
     return parts;
 }
@@ -72,6 +74,8 @@ std::string inlinedFigure(std::string svg, std::size_t index, std::span<const in
     svg.erase(0, svg.find("<svg"));
     // Only the tag itself: std::regex recurses over the pictures that an SVG may hold.
     const std::size_t end = std::min(svg.find('>'), svg.size());
+    // Units are then points, and the text is small.
+    const bool inMillimetres = svg.find("mm\"") < end;
     std::string tag = std::regex_replace(svg.substr(0, end),
                                          std::regex(R"re(\s(width|height)="[\d.]+(mm)?")re"), "");
     tag = std::regex_replace(tag, std::regex("<svg"), "<svg role=\"img\"");
@@ -84,10 +88,14 @@ std::string inlinedFigure(std::string svg, std::size_t index, std::span<const in
         svg = withAfter(svg, mark, own, [](unsigned char) { return true; });
     const std::size_t last = svg.rfind("</svg>"), first = svg.find('>') + 1;
     if (columns.size() < 2 || last == svg.npos || first > last) return svg;
-    const std::string parts = columnsOf(tag, columns, own + "whole");
+    const std::string parts = columnsOf(tag, columns, own + "whole", inMillimetres ? 1.5 : 1);
     if (parts.empty()) return svg;
     svg.replace(last, svg.npos, "</g></svg>" + parts);
-    svg.insert(first, "<g id=\"" + own + "whole\">");
+    // A column that shrinks by half on a narrow page has larger text there.
+    constexpr int wide = 700;
+    const bool large = columns[1] - columns[0] > wide;
+    svg.insert(first,
+               fmt::format("<g id=\"{}whole\" class=\"columns{}\">", own, large ? " wide" : ""));
     return svg.insert(std::string_view("<svg").size(), " class=\"whole\"");
 }
 

@@ -77,6 +77,9 @@ std::string figuresScript(const std::vector<PrintFigure>& figures, const FigureS
 std::string figureCsv(const PrintFigure& figure);
 /// Width and height in mm: the style's width, and the height that panels and legend need.
 std::array<double, 2> figureSize(const PrintFigure& figure, const FigureStyle& style);
+/// The left ends of the columns of panels, in points, for inlinedFigure(). None where panels share
+/// axes: only the first column has the labels of its ticks.
+std::vector<int> figureColumns(const PrintFigure& figure, const FigureStyle& style);
 
 /// The files of figures in a set that is yet to be committed.
 struct AddedFigures {

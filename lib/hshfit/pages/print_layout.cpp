@@ -85,7 +85,7 @@ Margins marginsOf(const PrintFigure& figure, double size) {
     if (figure.kind == PrintFigure::Kind::polar) return {0.3 * size, 0.3 * size, 0.2 * size, title};
     double ticks = 0;
     for (const PrintPanel& panel : figure.panels) ticks = std::max(ticks, ticksWidth(panel.y));
-    Margins margins{(2.1 + ticks) * size, 1.2 * size, 3.2 * size, title};
+    Margins margins{(2.4 + ticks) * size, 1.2 * size, 3.5 * size, title};
     if (figure.kind == PrintFigure::Kind::map) margins.right = 5.5 * size;
     return margins;
 }
@@ -128,13 +128,15 @@ PrintLayout layoutOf(const PrintFigure& figure, const FigureStyle& style) {
 
     PrintLayout layout{.width = style.width * pointsPerMillimetre};
     layout.legend = itemsOf(figure);
-    const double legend =
-        1.5 * size *
-            static_cast<double>(breakIntoRows(layout.legend, layout.width - 2 * size, size)) +
-        0.3 * size;
     const auto n = static_cast<double>(columns);
     const double inner = layout.width - margins.left - margins.right - (n - 1) * between;
     const double width = std::max(inner / n, 2 * size);
+    // Columns that can be parted leave the legend whole.
+    const double legendWidth =
+        (close ? layout.width : margins.left + width + margins.right) - 2 * size;
+    const double legend =
+        1.5 * size * static_cast<double>(breakIntoRows(layout.legend, legendWidth, size)) +
+        0.3 * size;
     const double height = width * heightOver(figure, columns);
     const double rowHeight = margins.top + height;
     layout.height = legend + margins.bottom + static_cast<double>(rows) * rowHeight +
@@ -152,6 +154,18 @@ PrintLayout layoutOf(const PrintFigure& figure, const FigureStyle& style) {
                                  !close || k + columns >= count, !close || column == 0});
     }
     return layout;
+}
+
+std::vector<int> figureColumns(const PrintFigure& figure, const FigureStyle& style) {
+    std::vector<int> columns;
+    if (figure.shared) return columns;
+    const double margin = marginsOf(figure, style.fontSize).left;
+    for (const PrintBox& box : layoutOf(figure, style).panels) {
+        const int left = static_cast<int>(box.left - margin);
+        if (!columns.empty() && left <= columns.back()) break;
+        columns.push_back(left);
+    }
+    return columns;
 }
 
 std::array<double, 2> figureSize(const PrintFigure& figure, const FigureStyle& style) {

@@ -180,8 +180,8 @@ private:
         const double size = style_.fontSize;
         fields.set("middle", across((box.left + box.right) / 2));
         fields.set("centre", up((box.bottom + box.top) / 2));
-        fields.set("xLabelAt", up(box.bottom - 2.3 * size));
-        fields.set("yLabelAt", across(box.left - (ticksWidth(panel.y) + 1.3) * size));
+        fields.set("xLabelAt", up(box.bottom - 2.6 * size));
+        fields.set("yLabelAt", across(box.left - (ticksWidth(panel.y) + 1.6) * size));
     }
 
     static void setPolar(const PrintPanel& panel, data& fields) {

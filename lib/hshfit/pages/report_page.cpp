@@ -181,7 +181,7 @@ std::string reportPage(const Report& report, const std::vector<std::string>& fig
     page.set("thresholds", limits);
     std::string plotter = "gnuplot";
     // The panels over coefficients and over the order, as curves.gp places them.
-    constexpr std::array columns{0, 510};
+    constexpr std::array columns{0, 493};
     data entries{data::type::list};
     for (std::size_t i = 0; i < count; ++i) {
         data entry = entryData(report.reports[i], i + 1);

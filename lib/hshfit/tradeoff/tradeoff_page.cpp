@@ -253,6 +253,8 @@ std::string page(std::span<const Tradeoff> trades, const std::vector<std::string
     fields.set("metric", trades.empty() ? "" : metricText(trades[0].metric));
     fields.set("timed", !trades.empty() && !trades[0].times.empty());
     std::string plotter = "gnuplot";
+    // The panel and its key, as tradeoff.gp places them.
+    constexpr std::array columns{0, 790};
     data entries{data::type::list};
     for (std::size_t t = 0; t < trades.size(); ++t) {
         data entry = entryOf(trades[t]);
@@ -260,7 +262,7 @@ std::string page(std::span<const Tradeoff> trades, const std::vector<std::string
         entry.set("brdf", withoutFolders(trades[t].brdf));
         if (t < figures.size()) {
             plotter = plotterOf(figures[t]);
-            entry.set("figure", inlinedFigure(figures[t], t + 1));
+            entry.set("figure", inlinedFigure(figures[t], t + 1, columns));
         }
         entries.push_back(entry);
     }

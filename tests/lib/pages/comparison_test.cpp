@@ -250,6 +250,20 @@ TEST_F(ComparisonFiles, ZerosLeaveGapsInPolarPlots) {
     EXPECT_GT(points, 8u * 2 * 60);
 }
 
+TEST(Comparison, NamesOnThePageHaveFourDigits) {
+    const FormulaBrdf a = scaled(1), b = scaled(2);
+    Comparison c = makeComparison(a, b, small());
+    c.reference.name = "folder/some.binary";
+    c.approximation.name = "ggx:alpha=0.23367945978884277,F0=0.5,ks=1e-05";
+    c.metrics.front().value.reset();
+    c.metrics.front().reason = "lambert:kd=0.12345678901234567 grows";
+    const std::string page = comparisonPage(c, {}, "", "");
+    EXPECT_EQ(page.find("0.23367945978884277"), page.npos);
+    EXPECT_NE(page.find("<code>ggx:alpha=0.2337,F0=0.5,ks=1e-05</code>"), page.npos);
+    EXPECT_NE(page.find("<code>folder/some.binary</code>"), page.npos);
+    EXPECT_NE(page.find("lambert:kd=0.1235 grows"), page.npos);
+}
+
 TEST_F(ComparisonFiles, NamesAreText) {
     class Named : public FormulaBrdf {
     public:

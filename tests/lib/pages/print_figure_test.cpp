@@ -1,6 +1,7 @@
 // Figures for print: colours, axes, and the files that gnuplot draws.
 
 #include <hshfit/error.h>
+#include <hshfit/pages/internal/print_layout.h>
 #include <hshfit/pages/print_figure.h>
 
 #include "lib/coefficient_files/coefficient_samples.h"
@@ -230,6 +231,31 @@ TEST_F(PrintedFigures, HaveAMarkerForEachValueAndNoSpikes) {
         EXPECT_EQ(facts.markers, markers + 1) << "and one in the legend";
         EXPECT_LE(facts.farthest, 0.5);
     }
+}
+
+/// Two rows of two panels with own axes; the legend is wider than a column.
+TEST(PrintFigure, ColumnsCanBeShownApart) {
+    PrintSeries series{.label = {}, .x = {0, 1}, .y = {0, 1}};
+    PrintPanel panel{.x = linearAxis(0, 1, "x"), .y = linearAxis(0, 1, "y")};
+    for (const char* more : {"one", "two", "three", "four"}) {
+        series.label = std::string("a name in the legend, ") + more;
+        panel.series.push_back(series);
+    }
+    const PrintFigure own{.shared = false, .panels = {panel, panel, panel, panel}};
+    const FigureStyle page{.width = 174};
+    const double points = 174 * 72 / 25.4;
+    const std::vector<int> columns = figureColumns(own, page);
+    ASSERT_EQ(columns.size(), 2u);
+    EXPECT_EQ(columns[0], 0);
+    EXPECT_NEAR(columns[1], points / 2, 0.05 * points);
+    // Panels with shared axes have their labels at the margins: they stay together.
+    const PrintFigure shared{.shared = true, .panels = own.panels};
+    EXPECT_TRUE(figureColumns(shared, page).empty());
+    // The legend is within the first column.
+    const std::vector<LegendItem> legend = layoutOf(own, page).legend;
+    ASSERT_EQ(legend.size(), 4u);
+    for (const LegendItem& item : legend)
+        EXPECT_LT(item.x + page.fontSize * (legendSample + textWidth(item.label)), columns[1]);
 }
 
 TEST_F(PrintedFigures, HaveTheWidthThatIsAskedFor) {

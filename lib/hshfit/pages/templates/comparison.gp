@@ -143,7 +143,7 @@ set xrange [0:1]
 set xtics nomirror ('0°' 0, '1°' sqrt(1 / 90.0), '5°' sqrt(5 / 90.0), '15°' sqrt(15 / 90.0), \
            '30°' sqrt(30 / 90.0), '45°' sqrt(45 / 90.0), '60°' sqrt(60 / 90.0), '90°' 1)
 do for [panel = 0:5] {
-    set lmargin at screen 0.06 + 0.327 * (panel % 3)
+    set lmargin at screen 0.067 + 0.327 * (panel % 3)
     set rmargin at screen 0.325 + 0.327 * (panel % 3)
     set bmargin at screen panel < 3 ? 0.57 : 0.09
     set tmargin at screen panel < 3 ? 0.95 : 0.47
@@ -216,7 +216,7 @@ unset colorbox
 set border 3
 set tics nomirror out scale 0.6
 set grid linecolor rgb '#c8c8c8' linewidth 0.5 dashtype 1, linecolor rgb '#c8c8c8' linewidth 0.5 dashtype 1
-set lmargin at screen 0.60
+set lmargin at screen 0.61
 set rmargin at screen 0.97
 set xrange [0:90]
 set yrange [0:{{albedoTop}}]

@@ -63,7 +63,7 @@ do for [pass = from:to] {
         set bmargin at screen bottom + 0.13 * rowHeight
         set tmargin at screen bottom + 0.89 * rowHeight
         set lmargin at screen 0.10
-        set rmargin at screen 0.79
+        set rmargin at screen 0.76
         set label 1 rowTitle[row] at screen 0.10, screen bottom + 0.95 * rowHeight left
         set label 2 metric at screen 0.018, screen bottom + 0.51 * rowHeight center rotate
         set xlabel pass == 0 ? 'bytes' : 'nanoseconds a pair of directions, 4096 at a time, one thread'
