@@ -38,10 +38,13 @@ std::unique_ptr<TexelEncoder> clustersFor(MapWork& work, const SvbrdfOptions& op
     std::vector<std::size_t> counts{16, 64, 256, 1024};
     if (std::ranges::find(counts, options.clusters) == counts.end())
         counts.push_back(options.clusters);
+    std::ranges::sort(counts);
     std::unique_ptr<TexelEncoder> chosen;
+    bool allMaterials = false;  // a trial had a cluster for each
     for (const std::size_t clusters : counts) {
         if (clusters > std::max<std::size_t>(1024, options.clusters)) continue;
         const bool isAsked = clusters == options.clusters;
+        if (!isAsked && allMaterials) continue;
         if (!isAsked && isOver(work.time, processes)) {
             result.timeIsOver = true;
             continue;
@@ -52,6 +55,9 @@ std::unique_ptr<TexelEncoder> clustersFor(MapWork& work, const SvbrdfOptions& op
         auto encoder = std::make_unique<ClusterEncoder>(
             lowRank, isAsked ? levels : LevelSamples{levels.front()}, asked, processes);
         const std::size_t count = encoder->count(0);
+        // Where the map has fewer materials than were asked for, trials of more are this one.
+        if (allMaterials) result.choices.pop_back();
+        allMaterials = count < clusters;
         result.choices.push_back({.form = "clusters",
                                   .count = count,
                                   .bytesOfTexel = 4,

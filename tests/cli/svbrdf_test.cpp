@@ -332,6 +332,22 @@ TEST_F(Svbrdf, FilesOfAMapAreOneSet) {
     EXPECT_EQ(names, (std::set<std::string>{"errors.png", "material.json", "material.ktx2"}));
 }
 
+TEST_F(Svbrdf, TrialsOfMoreClustersThanMaterialsAreOne) {
+    writeMap("kd.pfm", 4, 4, [](int x, int) { return 0.2F + 0.2F * static_cast<float>(x % 3); });
+    describe("lambert", {{"kd", {{"map", "kd.pfm"}}}});
+    for (const int asked : {2, 32, 256}) {
+        const Answer answer =
+            made("--force -o " + path("out") +
+                 fmt::format(" --form clusters --mips none --clusters {}", asked));
+        ASSERT_EQ(answer.code, 0) << answer.err;
+        std::vector<int> counts;
+        const Json document = Json::parse(answer.out);
+        for (const Json& choice : document["choices"])
+            if (choice["form"] == "clusters") counts.push_back(choice["count"]);
+        EXPECT_EQ(counts, asked == 2 ? (std::vector<int>{2, 3}) : std::vector<int>{3}) << asked;
+    }
+}
+
 /// Two diffuse texels share the material b = (1/.2 + 1/.6) / (1/.2^2 + 1/.6^2) = 0.24, the mean in
 /// relative squares. Over wi the mean of ln(1 + u cos) is ((1 + u) ln(1 + u) - u) / u, u = albedo /
 /// pi; albedos differ by 0.36 at most and f cos by that over pi.
