@@ -16,6 +16,7 @@
 #include <brdfs/catalog.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <atomic>
@@ -40,6 +41,35 @@ bool hasTerms(const Brdf& brdf) {
 
 std::string textOf(const ml::Limits& limits) {
     return fmt::format("{}, {}, {}", limits.log, limits.maximum, limits.flip);
+}
+
+/// Throws where a basis has too little to be learned from; `leftOut` has the other materials, each
+/// with its reason.
+void requireTwoChannels(std::size_t channels, const std::vector<std::string>& leftOut) {
+    if (channels >= 2) return;
+    throw UsageError(fmt::format(
+        "a basis is learned from two channels or more of isotropic materials, and these have {}{}: "
+        "give more of them, or one in colours",
+        channels, leftOut.empty() ? "" : fmt::format(" (left out: {})", fmt::join(leftOut, "; "))));
+}
+
+/// Does so before materials are projected, as far as their laws tell.
+void requireTwoChannelsOf(const std::vector<std::string>& specs) {
+    std::size_t channels = 0;
+    std::vector<std::string> leftOut;
+    for (const std::string& spec : specs) {
+        try {
+            const auto brdf = openSource(spec);
+            if (hasTerms(*brdf))
+                channels += brdf->channels().count();
+            else
+                leftOut.push_back(materialName(spec) + " is anisotropic");
+        } catch (const Error&) {
+            return;  // addEntries reports all that fail
+        }
+        if (channels >= 2) return;
+    }
+    requireTwoChannels(channels, leftOut);
 }
 
 /// Projects a material into the store, or gives it a form of its own.
@@ -122,6 +152,13 @@ ml::Library addLibrary(const std::string& path, ml::MaterialStore& store) {
 LearnedLibrary learnFrom(const ml::LogSpace& space, ml::MaterialStore& store,
                          const LearnLibraryOptions& options, const std::string& output) {
     store.sort();
+    std::size_t channels = 0;
+    std::vector<std::string> leftOut;
+    for (std::size_t k = 0; k < store.size(); ++k) channels += store.channels(k);
+    if (channels < 2)
+        for (std::size_t k = 0; k < store.ownForms(); ++k)
+            leftOut.push_back(fmt::format("{} {}", store.ownName(k), store.own(k).fallback));
+    requireTwoChannels(channels, leftOut);
     LearnedLibrary learned;
     ml::LibraryWriter writer(store.folder());
     learned.library = ml::learn(
@@ -165,8 +202,9 @@ LearnedLibrary learnLibrary(const std::vector<std::string>& specs, const std::st
         options.learn = before.asked;
         options.limits = before.limits;
     }
-    const ml::LogSpace space;
     const std::vector<std::string> inputs = expandInputs(specs);
+    if (options.addTo.empty()) requireTwoChannelsOf(inputs);
+    const ml::LogSpace space;
     std::vector<std::string> leftOut =
         addEntries(space, inputs, options.limits, time, listener, store);
     if (!leftOut.empty())

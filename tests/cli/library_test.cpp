@@ -458,10 +458,9 @@ TEST_F(LibraryCommand, MeasuresAndReconstructs) {
     const std::string bands = read(path("bands.csv"));
     EXPECT_EQ(std::count(bands.begin(), bands.end(), '\n'), 180);
     EXPECT_EQ(run("eval " + path("again.library") + " --wi 30,0 --wo 30,180").code, 0);
-    EXPECT_EQ(answer("next " + path("samples.csv") + " --count 2" + library +
-                     " --instrument in-plane")["pairs"]
-                  .size(),
-              2u);
+    const Json more =
+        answer("next " + path("samples.csv") + " --count 2" + library + " --instrument in-plane");
+    EXPECT_EQ(more["pairs"].size(), 2u);
 }
 
 TEST_F(LibraryCommand, MistakesAreOneLineAndLeaveNoFile) {
@@ -477,7 +476,8 @@ TEST_F(LibraryCommand, MistakesAreOneLineAndLeaveNoFile) {
     refused("learn lambert", 2, "needs -o");
     refused("learn lambert --sigma 2%" + out, 2, "takes no --sigma");
     refused("learn lambert --bytes 30 --add-to " + a + out, 2, "takes no --bytes");
-    refused("learn lambert:kd=.3" + out, 2, "two channels or more");
+    refused("learn ward:ax=.1,ay=.4 ggx:alpha=.2" + out, 2, "1 (left out: ward_ax=.1_ay=.4 is");
+    refused("learn ggx:alpha=.2,F0=1/.6/.3 --limit 1e-9" + out, 2, "ggx_alpha=.2_F0=1_.6_.3 has a");
     refused("learn lambert:kd=.3/.2/.1 lambert:kd=.3/.2/.1" + out, 2, "two materials are named");
     refused("learn lambert:kd=.3/.2/.1 absent.binary" + out, 3, "absent.binary");
     refused("learn ggx:alpha=.2 --bytes 6 --components x" + out, 2, "expected auto");
