@@ -41,11 +41,12 @@ std::string reciprocityReason(const Brdf& brdf, const Health& health) {
     return fmt::format("exchanged directions differ by {:.2g} of f", health.reciprocityDefect);
 }
 
-std::string energyReason(const Brdf&, const Health& health) {
+std::string energyReason(const Brdf& brdf, const Health& health) {
     if (!health.createsEnergy()) return {};
     const double largest = health.largestReflectance();
-    return largest < 1e4 ? fmt::format("the largest reflectance is {:.4f}", largest)
-                         : fmt::format("the largest reflectance is {:.4g}", largest);
+    const char* const share = transmits(brdf) ? "transmittance" : "reflectance";
+    return largest < 1e4 ? fmt::format("the largest {} is {:.4f}", share, largest)
+                         : fmt::format("the largest {} is {:.4g}", share, largest);
 }
 
 Chosen parseNames(std::string_view names) {

@@ -102,6 +102,17 @@ TEST_F(TransmissionCommands, CoefficientsOfATransmissionStayOne) {
             "directions are not exchanged");
 }
 
+TEST_F(TransmissionCommands, RepairsSpeakOfTransmittance) {
+    const auto suggested = [&](const std::string& model, const std::string& key) {
+        const std::string spec = model + ":" + key + "=.8 + " + model + ":" + key + "=.5";
+        return run("info '" + spec + "'").out;
+    };
+    EXPECT_NE(suggested("lambert-transmission", "kt").find("the largest transmittance is 1.3000"),
+              std::string::npos);
+    EXPECT_NE(suggested("lambert", "kd").find("the largest reflectance is 1.3000"),
+              std::string::npos);
+}
+
 TEST_F(TransmissionCommands, PictureErrorsAreThoseOfTheMirroredReflection) {
     const auto picture = [&](const std::string& model, const std::string& key) {
         const Answer answer = run("compare " + model + ":" + key + "=.2/.5/.7 " + model + ":" +
