@@ -8,6 +8,7 @@
 #include <hshfit/error.h>
 #include <hshfit/light/catalog.h>
 #include <hshfit/meshes/mesh_file.h>
+#include <hshfit/percent.h>
 #include <hshfit/pictures/sphere_picture.h>
 #include <hshfit/projection/projection.h>
 #include <hshfit/transport/possible_radiance.h>
@@ -162,6 +163,28 @@ void remark(const RenderedPicture& picture, std::size_t points, const Listener& 
     }
 }
 
+/// Tells the listener about a pane that shows no light: all of it falls on the viewer's side.
+void remarkBlack(const Brdf& brdf, const SpherePicture& picture, const RenderOptions& options,
+                 const Listener& listener) {
+    constexpr double most = 0.8;
+    if (!transmits(brdf)) return;
+    std::size_t shown = 0, black = 0;
+    for (std::size_t pixel = 0; pixel < picture.coverage.size(); ++pixel) {
+        if (!(picture.coverage[pixel] > 0)) continue;
+        const auto first = picture.radiance.begin() + static_cast<std::ptrdiff_t>(3 * pixel);
+        ++shown;
+        if (std::all_of(first, first + 3, [](float value) { return value == 0; })) ++black;
+    }
+    const double share = static_cast<double>(black) / static_cast<double>(shown);
+    if (shown == 0 || share < most) return;
+    const std::string opposite =
+        fmt::format("{},{}", 180 - options.view.theta, std::fmod(options.view.phi + 180, 360));
+    listener.say(
+        fmt::format("{}: {} of the pane is black: it shows light from behind it, and here light "
+                    "and viewer are on one side; give a light behind it, or {}",
+                    brdf.name(), percent(share, 3), Setting{"RenderOptions::view", opposite}));
+}
+
 std::map<std::string, std::string> attributesOf(const Rendered& rendered) {
     std::map<std::string, std::string> attributes;
     for (const RenderedPicture& picture : rendered.pictures) {
@@ -256,6 +279,10 @@ public:
                 remark(facts, points_.count(), listener_);
                 sheet.add(facts, material.truth->picture);
             }
+            remarkBlack(
+                *material.brdf,
+                material.truth ? material.truth->picture : byCoefficients_.front()[m].picture,
+                options_, listener_);
             for (std::size_t k = 0; k < columns_.size(); ++k) {
                 const LitPicture& lit = byCoefficients_[k][m];
                 RenderedPicture facts{.kind = RenderedPicture::Kind::coefficients,

@@ -113,6 +113,25 @@ TEST_F(TransmissionCommands, RepairsSpeakOfTransmittance) {
               std::string::npos);
 }
 
+TEST_F(TransmissionCommands, PanesWithoutLightBehindThemSaySo) {
+    const std::string pane = "render lambert-transmission:kt=.5 --size 32 --force -o " +
+                             path("p.png") + " --light ",
+                      front = "sun:elevation=40,irradiance=3", said = "of the pane is black";
+    for (const char* by : {" --by integration", " --by coefficients --outgoing 8"}) {
+        const Answer dark = run(pane + front + by);
+        EXPECT_EQ(dark.code, 0) << dark.err;
+        EXPECT_NE(dark.err.find(said), std::string::npos) << by << dark.err;
+        // The view that the message names has the light behind the pane.
+        ASSERT_NE(dark.err.find("--view 105,180"), std::string::npos) << dark.err;
+        EXPECT_EQ(run(pane + front + " --view 105,180" + by).err.find(said), std::string::npos);
+    }
+    EXPECT_EQ(run(pane + "uniform:radiance=1").err.find(said), std::string::npos);
+    EXPECT_EQ(run("render lambert --size 32 --by integration -o " + path("l.png") +
+                  " --light sun:elevation=-80,irradiance=3")
+                  .err.find(said),
+              std::string::npos);
+}
+
 TEST_F(TransmissionCommands, PictureErrorsAreThoseOfTheMirroredReflection) {
     const auto picture = [&](const std::string& model, const std::string& key) {
         const Answer answer = run("compare " + model + ":" + key + "=.2/.5/.7 " + model + ":" +
