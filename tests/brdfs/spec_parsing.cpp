@@ -143,7 +143,8 @@ TEST(Spec, EveryNumberIsChecked) {
             expectError<UsageError>(head + "1/2", {key + "=1/2", "2 values", range});
             expectError<UsageError>(head + "1/2/3/4", {"4 values", range});
             if (parameter.kind == Parameter::Kind::number)
-                expectError<UsageError>(head + "1/1/1", {"3 values", range});
+                expectError<UsageError>(head + "1/1/1",
+                                        {"3 values", "one number for all channels", range});
             else
                 expectError<UsageError>(head + "0/0/" + std::to_string(parameter.min - 1),
                                         {"out of range", range});

@@ -54,8 +54,10 @@ std::vector<double> parseNumbers(std::string_view owner, const Parameter& parame
     const std::vector<std::string_view> parts = split(value, '/');
     const bool colour = parameter.kind == Parameter::Kind::colour;
     if (parts.size() != 1 && !(colour && parts.size() == 3))
-        throw UsageError(fmt::format("{}: {}={} has {} values; valid: {}", owner, parameter.name,
-                                     value, parts.size(), validValues(parameter)));
+        throw UsageError(fmt::format(
+            "{}: {}={} has {} values; {}; valid: {}", owner, parameter.name, value, parts.size(),
+            colour ? "it takes one, or three for R/G/B" : "it takes one number for all channels",
+            validValues(parameter)));
     std::vector<double> numbers;
     for (const std::string_view part : parts)
         numbers.push_back(parseNumber(owner, parameter, value, part));
