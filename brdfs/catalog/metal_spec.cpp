@@ -69,6 +69,7 @@ MetalSpec partsOf(std::string_view text) {
     }
     if (spec.metal.empty()) return spec;
     checkModel(spec, "");
+    spec.metal = findMetal(spec.metal).name;
     for (const std::string_view key : keys) checkModel(spec, key);
     return spec;
 }

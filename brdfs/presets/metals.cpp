@@ -145,7 +145,8 @@ std::span<const Metal> metals() {
 }
 
 const Metal& findMetal(std::string_view name) {
-    const auto found = std::ranges::find(table, name, &Metal::name);
+    const auto found = std::ranges::find_if(
+        table, [&](const Metal& metal) { return metal.name == name || metal.symbol() == name; });
     if (found != std::end(table)) return *found;
     std::vector<std::string_view> known;
     for (const Metal& metal : table) known.push_back(metal.name);

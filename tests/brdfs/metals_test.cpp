@@ -15,6 +15,7 @@
 #include <complex>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace hshfit::brdfs {
@@ -90,6 +91,17 @@ const std::vector<LorentzDrude> formulas{
      {0, 0.777, 1.545, 2.509, 19.43},
      0.04},
 };
+
+TEST(Metals, SymbolsNameThem) {
+    const std::pair<const char*, const char*> symbols[] = {
+        {"Au", "gold"},     {"Ag", "silver"}, {"Cu", "copper"},   {"Al", "aluminium"},
+        {"Cr", "chromium"}, {"Ni", "nickel"}, {"Ti", "titanium"}, {"Fe", "iron"}};
+    for (const auto& [symbol, name] : symbols) EXPECT_EQ(findMetal(symbol).name, name);
+    EXPECT_THROW(findMetal("A"), UsageError);
+    EXPECT_THROW(findMetal(""), UsageError);
+    const auto bySymbol = open("ggx:alpha=.2,metal=Au"), byName = open("ggx:alpha=.2,metal=gold");
+    EXPECT_EQ(bySymbol->name(), byName->name());
+}
 
 TEST(Metals, RowsAscendAndAreSmooth) {
     EXPECT_EQ(metals().size(), 8u);
