@@ -12,6 +12,7 @@
 #include <hshfit/brdf/colour.h>
 #include <hshfit/brdf/one_channel.h>
 #include <hshfit/error.h>
+#include <hshfit/files/extension.h>
 #include <hshfit/files/json_format.h>
 
 #include <fmt/format.h>
@@ -82,7 +83,7 @@ const Format& formatByExtension(const std::string& path, std::span<const unsigne
                                 std::uint64_t size) {
     const std::string start = fmt::format("{}: of no known format", path);
     refuseForeign(path, head, false);
-    const std::string extension = fs::path(path).extension().string();
+    const std::string extension = extensionOf(path);
     const bool plain = isPlainText(head);
     // A single word may be the beginning of either.
     const bool word =
@@ -135,7 +136,7 @@ std::unique_ptr<Brdf> openFile(const std::string& path, std::string_view options
     const auto head = std::span(bytes).subspan(mark);
     refuseForeign(path, head, true);
     const Format* format = recognisedFormat(head, size);
-    const std::string extension = fs::path(path).extension().string();
+    const std::string extension = extensionOf(path);
     if (!format && extension == xomptFormat().extension) format = &xomptFormat();
     if (!format && !isJson(head)) refuseForeign(path, head, false);
     if (!format && (extension == ".json" || isPreset(head)))

@@ -2,6 +2,7 @@
 
 #include <hshfit/error.h>
 #include <hshfit/files/exr_picture.h>
+#include <hshfit/files/extension.h>
 #include <hshfit/files/json_fields.h>
 #include <hshfit/version.h>
 
@@ -17,10 +18,6 @@ namespace hshfit::brdfs {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string extensionOf(const std::string& path) {
-    return std::filesystem::path(path).extension().string();
-}
 
 Json rowsOf(const LtcTable& table, const auto& valueOf) {
     Json rows = Json::array();

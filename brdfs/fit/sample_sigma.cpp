@@ -2,6 +2,7 @@
 
 #include <hshfit/brdf/directions.h>
 #include <hshfit/error.h>
+#include <hshfit/files/extension.h>
 
 #include <fmt/format.h>
 
@@ -78,7 +79,7 @@ SigmaStatement parseSigma(std::string_view text) {
         result.from = From::column;
         return result;
     }
-    if (text.ends_with(".csv")) {
+    if (extensionOf(std::string(text)) == ".csv") {
         result.from = From::file;
         result.path = text;
         return result;

@@ -2,6 +2,7 @@
 
 #include <hshfit/coefficient_files/coefficient_file.h>
 #include <hshfit/each_in_parallel.h>
+#include <hshfit/files/extension.h>
 #include <hshfit/wording.h>
 
 #include <brdfs/catalog.h>
@@ -43,7 +44,7 @@ bool isMeasured(const fs::path& path) {
     if (error) return false;
     const std::span<const unsigned char> bytes(head.data(),
                                                static_cast<std::size_t>(file.gcount()));
-    const std::string extension = path.extension().string();
+    const std::string extension = extensionOf(path.string());
     const bool known = std::ranges::any_of(brdfs::formats(), [&](const brdfs::Format& format) {
         return format.extension == extension || format.recognises(bytes, size);
     });

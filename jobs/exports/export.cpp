@@ -13,6 +13,7 @@
 #include <hshfit/coefficient_files/representation_file.h>
 #include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/error.h>
+#include <hshfit/files/extension.h>
 #include <hshfit/files/file_set.h>
 #include <hshfit/files/json_fields.h>
 #include <hshfit/filtered_maps/filtered_sidecar.h>
@@ -52,7 +53,7 @@ struct Source {
 /// Throws InputError for a library, or the specification of a BRDF, in place of a file of
 /// coefficients.
 void requireCoefficients(const std::string& path) {
-    if (path.ends_with(".library"))
+    if (extensionOf(path) == ".library")
         throw InputError(fmt::format(
             "{0}: is a library of materials; the action export of the command library writes one "
             "shader for all, and a projection of {0}:NAME in the halfway form is exported as such",

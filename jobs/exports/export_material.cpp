@@ -10,6 +10,7 @@
 #include <hshfit/coefficient_files/coefficient_file.h>
 #include <hshfit/coefficient_files/representation_file.h>
 #include <hshfit/error.h>
+#include <hshfit/files/extension.h>
 #include <hshfit/files/file_set.h>
 #include <hshfit/files/json_fields.h>
 #include <hshfit/gpu/containers/targets.h>
@@ -54,7 +55,8 @@ struct Input {
 /// The data of a fit, from its preset; empty for anything else.
 std::string dataOf(const std::string& path) {
     std::error_code error;
-    if (!path.ends_with(".json") || std::filesystem::file_size(path, error) > (1 << 20) || error)
+    if (extensionOf(path) != ".json" || std::filesystem::file_size(path, error) > (1 << 20) ||
+        error)
         return {};
     std::ifstream file(path, std::ios::binary);
     const Json json = Json::parse(file, nullptr, false);

@@ -9,6 +9,7 @@
 #include <hshfit/brdf/transmission.h>
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
+#include <hshfit/files/extension.h>
 #include <hshfit/files/file_set.h>
 #include <hshfit/files/json_fields.h>
 #include <hshfit/pages/comparison.h>
@@ -27,7 +28,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -341,7 +341,7 @@ std::string lossOf(const FitOptions& options, const Brdf& data) {
 }
 
 bool isPresetPath(const std::string& output) {
-    return output.ends_with(".json");
+    return extensionOf(output) == ".json";
 }
 
 std::string presetText(const Fitted& fitted) {
@@ -388,7 +388,7 @@ std::pair<Fitted, PreparedFiles> fitOpen(const Brdf& brdf, const std::string& da
     PreparedFiles files;
     // A wrong list of pairs, or of fields, is known before the fit.
     if (!options.bands.empty()) bandPairs(options.bands);
-    if (!options.certificate.empty() && !options.certificate.ends_with(".pdf"))
+    if (!options.certificate.empty() && extensionOf(options.certificate) != ".pdf")
         throw UsageError(fmt::format("{} has to end in .pdf",
                                      Setting{"FitOptions::certificate", options.certificate}));
     if (!options.certificateFields.empty()) readCertificateFields(options.certificateFields);

@@ -6,6 +6,7 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/brdf/transmission.h>
 #include <hshfit/error.h>
+#include <hshfit/files/extension.h>
 #include <hshfit/light/catalog.h>
 #include <hshfit/meshes/mesh_file.h>
 #include <hshfit/percent.h>
@@ -355,7 +356,7 @@ Rendered render(const std::vector<std::string>& specs, const std::string& output
     AtomicFile file(output);
     renderer.light();
     result.stops = options.exposure ? *options.exposure : renderer.automaticStops();
-    SheetBuilder sheet(options, output.ends_with(".exr"), result);
+    SheetBuilder sheet(options, extensionOf(output) == ".exr", result);
     renderer.fill(sheet, result.stops);
     writeSheet(sheet.sheet(), result.stops, file, attributesOf(result));
     file.commit();

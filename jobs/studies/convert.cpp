@@ -6,6 +6,7 @@
 
 #include <hshfit/brdf/colour.h>
 #include <hshfit/error.h>
+#include <hshfit/files/extension.h>
 #include <hshfit/files/file_set.h>
 #include <hshfit/files/output_rule.h>
 #include <hshfit/files/standard_streams.h>
@@ -42,7 +43,7 @@ std::string writableFormats() {
 /// The requested writer, else the first in the table that has the file's extension.
 const brdfs::Writer& chooseWriter(const std::string& format, const std::string& output) {
     const std::string name = format.substr(0, format.find(':'));
-    const std::string extension = std::filesystem::path(output).extension().string();
+    const std::string extension = extensionOf(output);
     for (const auto& writer : brdfs::writers()) {
         if (name.empty() ? writer.extension == extension : writer.name == name) return writer;
     }

@@ -4,7 +4,9 @@
 #include <cli/program.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <filesystem>
 
 namespace {
 
@@ -107,6 +109,24 @@ TEST_F(Cli, NumbersThatDoNotExistEndInFour) {
 TEST_F(Cli, OutputErrorsEndInFive) {
     expectError("project lambert --outgoing 0,0 -o " + path("absent/x.json"), 5, "absent", 0);
     EXPECT_EQ(run("list bases >/dev/full").code, 5);
+}
+
+TEST_F(Cli, ExtensionsMeanTheSameInCapitals) {
+    for (const std::string extension : {"png", "exr"}) {
+        const std::string command = "render lambert --size 16 --by integration -o ";
+        std::string capitals = extension;
+        for (char& c : capitals) c = static_cast<char>(std::toupper(c));
+        ASSERT_EQ(run(command + path("a." + extension)).code, 0);
+        const Answer answer = run(command + path("b." + capitals));
+        ASSERT_EQ(answer.code, 0) << answer.err;
+        EXPECT_EQ(read(path("b." + capitals)).substr(0, 8),
+                  read(path("a." + extension)).substr(0, 8));
+    }
+    const Answer fitted = run("fit lambert --model lambert --starts 1 -o " + path("F.JSON"));
+    EXPECT_EQ(fitted.code, 0) << fitted.err;
+    EXPECT_TRUE(std::filesystem::is_regular_file(path("F.JSON")));
+    EXPECT_EQ(run("convert lambert:kd=0.5 " + path("L.XML")).code, 0);
+    EXPECT_EQ(run("info " + path("L.XML")).code, 0);
 }
 
 TEST_F(Cli, EvalPrintsTheFormula) {

@@ -4,6 +4,7 @@
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/files/exr_header.h>
+#include <hshfit/files/extension.h>
 #include <hshfit/files/json_format.h>
 
 #include <algorithm>
@@ -22,9 +23,7 @@ namespace {
 enum class Form { none, json, exr };
 
 Form formByExtension(const std::string& path) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+    const std::string extension = extensionOf(path);
     if (extension == ".json") return Form::json;
     if (extension == ".exr") return Form::exr;
     return Form::none;

@@ -1,4 +1,5 @@
 #include <hshfit/error.h>
+#include <hshfit/files/extension.h>
 #include <hshfit/files/file_set.h>
 #include <hshfit/files/made_from.h>
 #include <hshfit/wording.h>
@@ -142,7 +143,7 @@ void FileSet::takeBack() noexcept {
 /// since JSON may hold their checksums. A file with a key of its own stands for itself.
 void FileSet::stateKeys() {
     const auto isJson = [](const auto& member) {
-        return member->path.extension() == ".json" && !member->part;
+        return extensionOf(member->path.string()) == ".json" && !member->part;
     };
     const bool anyJson = std::ranges::any_of(members_, isJson);
     const auto states = [&](const auto& member) {

@@ -2,6 +2,7 @@
 #include <hshfit/error.h>
 #include <hshfit/files/checksum.h>
 #include <hshfit/files/exr_header.h>
+#include <hshfit/files/extension.h>
 #include <hshfit/files/json_fields.h>
 #include <hshfit/files/json_format.h>
 #include <hshfit/files/made_from.h>
@@ -274,10 +275,6 @@ Kind kindOf(std::istream& file, std::uint64_t size) {
     if (hasExrMagic(head)) return Kind::exr;
     if (head.starts_with(pngMagic) && size > pngMagic.size() + pngEnd) return Kind::png;
     return beginsAsJson(head) ? Kind::json : Kind::other;
-}
-
-std::string extensionOf(const std::string& path) {
-    return fs::path(path).extension().string();
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
+#include <hshfit/files/extension.h>
 #include <hshfit/pages/basis_figure.h>
 #include <hshfit/pages/gnuplot.h>
 
@@ -33,7 +34,7 @@ constexpr Terminal terminals[] = {
 };
 
 const Terminal& terminalOf(const std::string& path) {
-    const std::string extension = fs::path(path).extension().string();
+    const std::string extension = extensionOf(path);
     const auto* found = std::ranges::find(terminals, extension, &Terminal::extension);
     if (found == std::end(terminals)) {
         throw UsageError(

@@ -1,6 +1,7 @@
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/files/exr_picture.h>
+#include <hshfit/files/extension.h>
 #include <hshfit/pictures/rgb_picture.h>
 #include <hshfit/pictures/sphere_picture.h>
 
@@ -35,10 +36,6 @@ double quantileOfPixels(std::span<const SpherePicture> spheres, double share) {
     const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(largest.size() - 1));
     std::nth_element(largest.begin(), largest.begin() + at, largest.end());
     return largest[static_cast<std::size_t>(at)];
-}
-
-bool endsWith(const std::string& path, std::string_view extension) {
-    return path.size() > extension.size() && path.ends_with(extension);
 }
 
 std::size_t columnsOf(const Sheet& sheet) {
@@ -160,7 +157,7 @@ std::string sheetPng(const Sheet& sheet, double stops) {
 }
 
 void checkSpheresPath(const std::string& path) {
-    if (endsWith(path, ".png") || endsWith(path, ".exr")) return;
+    if (extensionOf(path) == ".png" || extensionOf(path) == ".exr") return;
     throw UsageError(fmt::format("'{}': the picture's extension has to be .png or .exr", path));
 }
 
@@ -181,7 +178,7 @@ void writeSheet(const Sheet& sheet, double stops, AtomicFile& file,
                 const std::map<std::string, std::string>& attributes) {
     checkSpheresPath(file.path());
     requireFiniteSheet(file.path(), sheet);
-    if (endsWith(file.path(), ".png")) {
+    if (extensionOf(file.path()) == ".png") {
         file.write(sheetPng(sheet, stops));
         return;
     }
