@@ -1,5 +1,6 @@
 #include "project.h"
 
+#include <jobs/common/inputs.h>
 #include <jobs/common/kept_outputs.h>
 #include <jobs/common/named_errors.h>
 #include <jobs/source/picture.h>
@@ -159,10 +160,21 @@ private:
     std::optional<Form> form_;
 };
 
+/// Throws OutputError for a folder in place of the file of one BRDF.
+void requireFile(const std::string& spec, const std::string& output) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    if (!output.ends_with('/') && !fs::is_directory(output, error)) return;
+    throw OutputError(
+        fmt::format("'{}' is a folder; the coefficients of one BRDF go to a file, such as '{}'",
+                    output, (fs::path(output) / (nameOf(spec) + ".json")).string()));
+}
+
 }  // namespace
 
 Projected project(const std::string& spec, const std::string& output, const ProjectOptions& options,
                   const Listener& listener) {
+    requireFile(spec, output);
     const Projector projector(options);
     Projected result = projector.run(spec, output, listener.part("project"));
     writeProjected(result, output);

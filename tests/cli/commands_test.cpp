@@ -129,6 +129,14 @@ TEST_F(Cli, ExtensionsMeanTheSameInCapitals) {
     EXPECT_EQ(run("info " + path("L.XML")).code, 0);
 }
 
+TEST_F(Cli, OneBrdfInAFolderNamesAFile) {
+    for (const std::string& folder : {path(""), path("absent/")}) {
+        const Answer answer = run("project lambert:kd=.5 -o " + folder);
+        EXPECT_EQ(answer.code, 5);
+        EXPECT_NE(answer.err.find(folder + "lambert_kd=.5.json"), std::string::npos) << answer.err;
+    }
+}
+
 TEST_F(Cli, EvalPrintsTheFormula) {
     EXPECT_NEAR(std::stod(run("eval lambert:kd=.5 --wi 10,0 --wo 20,0").out.substr(5)), 0.5 / M_PI,
                 1e-15);
