@@ -11,6 +11,7 @@
 
 #include <limits>
 #include <memory>
+#include <string_view>
 #include <utility>
 
 namespace hshfit::python {
@@ -49,14 +50,37 @@ Vectors fromArray(Doubles array, const char* name) {
     return vectors;
 }
 
-Doubles doublesOf(const py::object& argument, const char* name) {
-    Doubles array = Doubles::ensure(argument);
-    if (array) return array;
-    PyErr_Clear();
-    throw UsageError(fmt::format("{}: no array of numbers", name));
+/// The kind of numbers in what NumPy makes an array of: 'f', 'i', …; '\0' where it makes none.
+char kindOf(const py::object& argument) {
+    try {
+        const py::object array = py::module_::import("numpy").attr("asarray")(argument);
+        return py::cast<py::array>(array).dtype().kind();
+    } catch (py::error_already_set&) {
+        return '\0';  // rows of several lengths, or no sequence
+    }
 }
 
 }  // namespace
+
+Doubles doublesOf(const py::object& argument, const char* name) {
+    // An array of float64 of NumPy's own class is taken as it is.
+    const bool plain = Py_TYPE(argument.ptr()) == py::detail::npy_api::get().PyArray_Type_ &&
+                       Doubles::check_(argument);
+    if (!plain) {
+        if (py::module_::import("numpy.ma").attr("isMaskedArray")(argument).cast<bool>())
+            throw py::type_error(
+                fmt::format("{}: a masked array; give its filled() or compressed() numbers", name));
+        const char kind = kindOf(argument);
+        if (kind == 'c')
+            throw py::type_error(fmt::format("{}: complex numbers; give real ones", name));
+        if (std::string_view("biufO").find(kind) == std::string_view::npos)
+            throw py::type_error(fmt::format("{}: no array of numbers", name));
+    }
+    Doubles array = Doubles::ensure(argument);
+    if (array) return array;
+    PyErr_Clear();
+    throw py::type_error(fmt::format("{}: no array of numbers", name));
+}
 
 Vectors vectorsOf(const py::object& argument, const char* name) {
     return fromArray(doublesOf(argument, name), name);
@@ -139,8 +163,9 @@ std::string pathOf(const py::object& path, const char* name) {
     if (py::isinstance<py::str>(path)) return path.cast<std::string>();
     if (py::hasattr(path, "__fspath__"))
         return py::module_::import("os").attr("fspath")(path).cast<std::string>();
-    throw UsageError(fmt::format("{}: a string or a path, not {}", name,
-                                 py::str(path.get_type().attr("__name__")).cast<std::string>()));
+    throw py::type_error(
+        fmt::format("{}: a string or a path, not {}", name,
+                    py::str(path.get_type().attr("__name__")).cast<std::string>()));
 }
 
 std::vector<std::string> pathsOf(const py::object& paths, const char* name) {

@@ -22,6 +22,10 @@ namespace hshfit::python {
 using Doubles = py::array_t<double, py::array::forcecast>;
 using Shape = std::vector<py::ssize_t>;
 
+/// An argument as an array, in place where it is one of float64. Raises TypeError that begins with
+/// `name` for masked arrays, complex numbers and anything else without real numbers.
+Doubles doublesOf(const py::object& argument, const char* name);
+
 /// An argument of shape (..., 3), in place where it is an array of float64.
 struct Vectors {
     Doubles array;
@@ -29,7 +33,7 @@ struct Vectors {
     std::size_t count = 1;
     jobs::VectorArray data;
 };
-/// Throws UsageError that begins with `name` for anything else.
+/// Throws as doublesOf does, and UsageError that begins with `name` for another shape.
 Vectors vectorsOf(const py::object& argument, const char* name);
 /// Two of them, broadcast against each other as NumPy does it.
 std::pair<Vectors, Vectors> broadcast(const py::object& a, const char* nameOfA, const py::object& b,
@@ -49,12 +53,12 @@ py::array_t<double> arrayOf(std::vector<double> values, const Shape& shape);
 py::array_t<double> viewOf(const double* values, const Shape& shape, const py::object& owner);
 /// Directions as an array (n, 3).
 py::array_t<double> arrayOf(const std::vector<Direction>& directions);
-/// A copy of a float64 array of `count` numbers, in C order. Throws UsageError with `name`.
+/// A copy of a float64 array of `count` numbers, in C order. Throws as doublesOf does.
 std::vector<double> numbersOf(const py::object& argument, const char* name);
 
 /// The document as Python's json module reads it.
 py::object fromJson(const nlohmann::ordered_json& document);
-/// A string, or a path-like object, as a string. Throws UsageError with `name`.
+/// A string, or a path-like object, as a string. Raises TypeError with `name`.
 std::string pathOf(const py::object& path, const char* name);
 /// The string of one path, or of each path of a sequence.
 std::vector<std::string> pathsOf(const py::object& paths, const char* name);

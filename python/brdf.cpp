@@ -69,7 +69,7 @@ Channels channelsOf(const py::object& argument) {
 Shared functionBrdf(const py::object& f, const py::object& name, const py::object& channels,
                     const Laws& laws, double halfwayWidth, double tolerance) {
     if (PyCallable_Check(f.ptr()) == 0)
-        throw UsageError("f: a function f(wi, wo) of wi (n, 3) and wo (3,) that returns (n,)");
+        throw py::type_error("f: a function f(wi, wo) of wi (n, 3) and wo (3,) that returns (n,)");
     std::string called = "function";
     if (!name.is_none())
         called = name.cast<std::string>();
@@ -191,8 +191,8 @@ py::dict writtenTo(const py::object& self, const py::object& path, const std::st
 /// Unit vectors from angles in degrees, which broadcast.
 py::array_t<double> directionArray(const py::object& theta, const py::object& phi) {
     const py::object numpy = py::module_::import("numpy");
-    const py::tuple both = numpy.attr("broadcast_arrays")(numpy.attr("asarray")(theta, "float64"),
-                                                          numpy.attr("asarray")(phi, "float64"));
+    const py::tuple both =
+        numpy.attr("broadcast_arrays")(doublesOf(theta, "theta"), doublesOf(phi, "phi"));
     const std::vector<double> thetas = numbersOf(both[0], "theta"),
                               phis = numbersOf(both[1], "phi");
     std::vector<double> values;

@@ -32,10 +32,9 @@ py::array_t<double> valuesOf(const py::object& self) {
 }
 
 std::shared_ptr<Coefficients> withValues(const Coefficients& c, const py::object& values) {
-    const Doubles given = Doubles::ensure(values);
-    if (!given) PyErr_Clear();
+    const Doubles given = doublesOf(values, "values");
     const Shape shape = shapeOf(c);
-    if (!given || Shape(given.shape(), given.shape() + given.ndim()) != shape)
+    if (Shape(given.shape(), given.shape() + given.ndim()) != shape)
         throw UsageError(fmt::format("values: numbers of shape ({}, {}, {}), as `values` has",
                                      shape[0], shape[1], shape[2]));
     auto changed = std::make_shared<Coefficients>(c);

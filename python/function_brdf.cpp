@@ -14,15 +14,11 @@
 namespace hshfit::python {
 namespace {
 
-/// [direction][channel] of the function's answer to `out`, [channel][direction]. Throws UsageError
-/// for a shape that does not go with n directions.
+/// [direction][channel] of the function's answer to `out`, [channel][direction]. Throws as
+/// doublesOf does, and UsageError for a shape that does not go with n directions.
 void take(const py::object& answer, std::size_t count, std::size_t channels,
           const std::string& name, double* out) {
-    const Doubles values = Doubles::ensure(answer);
-    if (!values) {
-        PyErr_Clear();
-        throw UsageError(fmt::format("{}: the function returned no array of numbers", name));
-    }
+    const Doubles values = doublesOf(answer, (name + ": the answer of the function").c_str());
     // Axes of the directions and of the channels; an axis of length 1 stands for all.
     py::ssize_t direction = 0, channel = 0;
     const py::ssize_t axes = values.ndim();

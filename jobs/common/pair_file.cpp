@@ -29,6 +29,9 @@ double numberIn(std::string_view cell, const std::string& where) {
 
 Direction unitDirection(const Direction& d, const std::function<std::string()>& where) {
     const double length = lengthOf(d.x, d.y, d.z);
+    if (!std::isfinite(d.x) || !std::isfinite(d.y) || !std::isfinite(d.z))
+        throw InputError(
+            fmt::format("{}: the direction {}, {}, {} is not finite", where(), d.x, d.y, d.z));
     if (!isUnit(length)) {
         throw InputError(fmt::format("{}: the direction {}, {}, {} has length {:.4g}, not 1",
                                      where(), d.x, d.y, d.z, std::hypot(d.x, d.y, d.z)));

@@ -11,6 +11,7 @@ import numpy as np
 
 import hshfit
 import program
+from hshfit import _arguments
 
 UP = [0.0, 0.0, 1.0]
 
@@ -84,18 +85,79 @@ class Kinds(program.InFolder):
         with self.assertRaisesRegex(hshfit.UsageError, "1 rotations|0 rotations; give one of"):
             hshfit.Rotation()
 
+    def test_every_argument_of_a_wrong_type_is_named_in_one_line(self):
+        class Nothing:
+            """No type that any argument takes."""
+
+        found = hshfit.project("lambert", outgoing=4)
+        curves = hshfit.curves("lambert", max_order=2, outgoing=4)
+        objects = {"Basis": hshfit.Basis("hsh", 2), "Brdf": hshfit.open("lambert"),
+                   "Coefficients": found.coefficients, "Projection": found, "Curves": curves,
+                   "Curve": curves["hsh"], "Comparison": hshfit.compare("lambert", "lambert"),
+                   "Fit": hshfit.fit("lambert", "lambert", starts=1),
+                   "Form": hshfit.project("lambert", form="basis"),
+                   "Light": hshfit.light("uniform", order=2),
+                   "Rotation": hshfit.Rotation(up=(1, 2)),
+                   "Library": hshfit.Library.learn(["ggx:alpha=.3", "ggx:alpha=.4"], "a.library"),
+                   "Outgoing": hshfit.Outgoing("4")}
+        valid = {"brdf": "lambert", "data": "lambert", "a": "lambert", "b": "lambert",
+                 "spec": "lambert", "specs": ["lambert"], "model": "lambert", "models": ["lambert"],
+                 "path": "out", "file": "out", "output": "out", "folder": "out", "wi": UP, "wo": UP,
+                 "directions": UP, "name": "hsh", "basis": "hsh", "order": 2,
+                 "rotation": objects["Rotation"], "f": lambda wi, wo: wi[:, 2]}
+        tried = set()
+
+        def refused(call, name, argument, needed):
+            named = {other: valid.get(other, "lambert") for other in needed} | {argument: Nothing()}
+            with self.subTest(function=name, argument=argument):
+                with self.assertRaises(TypeError) as got:
+                    call(**named)
+                message = str(got.exception)
+                self.assertNotIn("\n", message)
+                self.assertRegex(message, rf"\b{argument}\b")
+                self.assertNotRegex(message, "has no argument|is missing|incompatible")
+                tried.add((name, argument))
+
+        for name in hshfit.__all__:
+            member = getattr(hshfit, name)
+            functions = [(name, member, name)]
+            if isinstance(member, type):
+                of = objects.get(name, member)
+                functions = [(method, getattr(of, method), f"{name}.{method}")
+                             for method in vars(member) if not method.startswith("_")
+                             and callable(getattr(of, method, None))]
+                if "__call__" in vars(member):
+                    functions.append(("__call__", of, f"{name}.__call__"))
+                if "__init__" in vars(member):
+                    functions.append(("__init__", member, name))
+            for plain, call, shown in functions:
+                doc = getattr(member, plain).__doc__ if isinstance(member, type) else call.__doc__
+                signature, _ = _arguments._signature(doc, plain)
+                signature = [row for row in signature or [] if row[0] != "self"]
+                needed = [argument for argument, _, needs in signature if needs]
+                for argument, _, _ in signature:
+                    refused(call, shown, argument, needed)
+        self.assertGreater(len(tried), 400)
+
     def test_arrays_that_are_no_directions(self):
         f = hshfit.open("lambert")
         with self.assertRaisesRegex(hshfit.UsageError, r"wi: .*shape \(\.\.\., 3\), not \(2\)"):
             f([0, 1], UP)
-        with self.assertRaisesRegex(hshfit.UsageError, "wo: no array of numbers"):
-            f(UP, "up")
+        for wrong, message in [("up", "wo: no array of numbers"), (3j * np.ones(3), "wo: complex"),
+                               (["0", "0", "1"], "wo: no array"), ([0, 0, 1j], "wo: complex"),
+                               (np.ma.masked_equal([0., 1, 0], 1), "wo: a masked array"),
+                               (np.array(["2020", "2021", "2022"], "datetime64[Y]"), "wo: no")]:
+            with self.assertRaisesRegex(TypeError, message):
+                f(UP, wrong)
         with self.assertRaisesRegex(hshfit.UsageError, "do not go together"):
             f(np.tile(UP, (2, 1)), np.tile(UP, (3, 1)))
         with self.assertRaisesRegex(hshfit.InputError, r"wi\[1\]: .* has length 2, not 1"):
             f([UP, [0, 0, 2]], UP)
-        with self.assertRaisesRegex(hshfit.InputError, r"wo\[0\]"):
-            f(UP, [np.nan, 0, 1])
+        for number in [np.nan, np.inf, -np.inf]:
+            with self.assertRaisesRegex(hshfit.InputError, r"wo\[0\]: .* is not finite"):
+                f(UP, [number, 0, 1])
+            with self.assertRaisesRegex(hshfit.InputError, r"wi\[1\]: .* is not finite"):
+                f([UP, [0, number, 1]], UP)
         with self.assertRaises(TypeError):
             hshfit.project("lambert", ordr=3)
 
@@ -108,8 +170,6 @@ class Kinds(program.InFolder):
     def test_functions_have_to_become_brdfs_first(self):
         with self.assertRaisesRegex(hshfit.UsageError, r"hshfit\.function\(\)"):
             hshfit.project(lambda wi, wo: 1)
-        with self.assertRaisesRegex(hshfit.UsageError, "a string or a path, not int"):
-            hshfit.project(3)
 
     def test_views_are_read_only_and_keep_their_owner(self):
         values = hshfit.project("lambert", outgoing=4).coefficients.values
