@@ -100,8 +100,9 @@ TEST_F(FitReports, PagesHaveTheFit) {
     std::size_t rows = 0;
     for (const Json& p : fit["parameters"]) {
         char error[32];
-        std::snprintf(error, sizeof error, "<td>%.2g</td>", p["standard_error"].get<double>());
-        rows += has(page, "<td>" + p["name"].get<std::string>() + "</td>") && has(page, error);
+        std::snprintf(error, sizeof error, "\">%.2g</td>", p["standard_error"].get<double>());
+        rows += has(page, "<th scope=\"row\">" + p["name"].get<std::string>() + "</th>") &&
+                has(page, error);
     }
     EXPECT_EQ(rows, 4u) << "each parameter with its standard uncertainty";
     EXPECT_TRUE(has(page, std::to_string(fit["uncertainty"]["degrees_of_freedom"].get<int>()) +

@@ -168,7 +168,7 @@ TEST_F(ComparisonFiles, ThePageHoldsEveryFigureAndNamesEveryFile) {
     EXPECT_EQ(count("<svg class=\"part\""), 2 + 3 + 2);
     for (const int figure : {1, 2, 3}) {
         const std::string group = "f" + std::to_string(figure) + "-whole";
-        EXPECT_EQ(count("<g id=\"" + group + "\">"), 1);
+        EXPECT_EQ(count("<g id=\"" + group + "\" class=\"columns\">"), 1);
         EXPECT_EQ(count("<use href=\"#" + group + "\"/>"), figure == 2 ? 3 : 2);
     }
     EXPECT_NE(page.find(base64(contentOf(folder / "a/spheres.png"))), std::string::npos);
