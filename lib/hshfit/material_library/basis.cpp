@@ -1,5 +1,6 @@
 #include <hshfit/material_library/basis.h>
 
+#include <hshfit/material_library/internal/least_in_steps.h>
 #include <hshfit/material_library/internal/log_samples.h>
 #include <hshfit/material_library/log_terms.h>
 
@@ -11,9 +12,8 @@ namespace hshfit::material_library {
 namespace {
 
 constexpr int mostTop = 255;
-/// The weight of lit pixels where all pairs have 1. Of the values 0.5 to 8, tried with the peaks,
-/// this one has the least FLIP without a loss.
-constexpr double pictureWeight = 4;
+/// The weights of colours of lit pixels, and of their channels each, where all pairs have 1.
+constexpr double colourWeight = 48, litWeight = 2;
 
 int halfRange(std::uint8_t width) {
     return 1 << (width - 1);
@@ -33,53 +33,6 @@ using Matrix = Eigen::Map<const linear_algebra::RowMajor>;
 Matrix matrixOf(const Basis& basis) {
     return {basis.components.data(), static_cast<Eigen::Index>(basis.size()),
             static_cast<Eigen::Index>(basis.mean.size())};
-}
-
-constexpr Eigen::Index peakStep = 8;
-
-/// The terms at every few pairs of the samples.
-Eigen::Map<const linear_algebra::RowMajor, 0, Eigen::OuterStride<>> everyFew(
-    const LogSamples& samples) {
-    const Eigen::Index terms = samples.terms.cols();
-    return {samples.terms.data(), samples.terms.rows() / peakStep, terms,
-            Eigen::OuterStride<>(peakStep * terms)};
-}
-
-/// Weights there by (f c)^2, c = cos(theta_i) and f by the sums of the material, that add up to 1:
-/// [pair][channel].
-Eigen::MatrixXd peakWeights(const LogSamples& samples, const LogMaterial& material) {
-    const auto channels = static_cast<Eigen::Index>(material.channels());
-    Eigen::MatrixXd peaks =
-        everyFew(samples) * Eigen::Map<const Eigen::MatrixXd>(material.exponents.data(),
-                                                              samples.terms.cols(), channels);
-    for (Eigen::Index c = 0; c < channels; ++c) {
-        const double top = material.tops[static_cast<std::size_t>(c)];
-        for (Eigen::Index n = 0; n < peaks.rows(); ++n) {
-            const auto k = static_cast<std::size_t>(n * peakStep);
-            const double f = std::max(std::exp(std::min(peaks(n, c), top)) - logOffset, 0.0);
-            peaks(n, c) = samples.pairs.weights[k] * std::pow(f * samples.pairs.z[k], 2);
-        }
-        peaks.col(c) /= std::max(peaks.col(c).sum(), 1e-300);
-    }
-    return peaks;
-}
-
-/// Coordinates a in whole steps with a small a^T gram a - 2 a^T right; the others are 0.
-std::vector<double> rounded(const Basis& basis, const Eigen::MatrixXd& gram,
-                            const Eigen::VectorXd& right) {
-    std::vector<double> all(basis.size(), 0.0);
-    const Eigen::LLT<Eigen::MatrixXd> factor(gram);
-    const Eigen::VectorXd best = factor.solve(right);
-    const Eigen::MatrixXd upper = factor.matrixU();
-    Eigen::VectorXd off = Eigen::VectorXd::Zero(best.size());  // best - rounded
-    for (Eigen::Index k = best.size() - 1; k >= 0; --k) {
-        const double most = basis.step * (halfRange(basis.widths[static_cast<std::size_t>(k)]) - 1);
-        const double free = best[k] + upper.row(k).dot(off) / upper(k, k);
-        const double value = std::clamp(basis.step * std::round(free / basis.step), -most, most);
-        all[static_cast<std::size_t>(k)] = value;
-        off[k] = best[k] - value;
-    }
-    return all;
 }
 
 }  // namespace
@@ -142,43 +95,74 @@ struct Encoder::Metric {
     Eigen::MatrixXd measured;  ///< components times the metric of all pairs
     Eigen::MatrixXd gram;      ///< that times components
     Eigen::MatrixXd seen;      ///< components at the pairs of pictures, [component][pair]
-    Eigen::MatrixXd peaks;     ///< and at every `peakStep`th pair of the samples
+    Eigen::MatrixXd peaks;     ///< and at the few pairs of the samples
 };
 
 Encoder::Encoder(const Basis& basis, const LogSpace& space) : basis_(basis), space_(space) {
-    const Eigen::MatrixXd measured = matrixOf(basis) * space.samples().metric;
-    metric_ = std::make_unique<const Metric>(
-        Metric{measured, measured * matrixOf(basis).transpose(),
-               matrixOf(basis) * space.samples().seen.terms.transpose(),
-               matrixOf(basis) * everyFew(space.samples()).transpose()});
+    const LogSamples& samples = space.samples();
+    const Eigen::MatrixXd measured = matrixOf(basis) * samples.metric;
+    metric_ =
+        std::make_unique<const Metric>(Metric{measured, measured * matrixOf(basis).transpose(),
+                                              matrixOf(basis) * samples.seen.terms.transpose(),
+                                              matrixOf(basis) * samples.few().transpose()});
 }
 
 Encoder::~Encoder() = default;
 
+/// The cost of coordinates a of all channels, a^T gram a - 2 a^T right: the first coordinate of
+/// each channel, then the second.
+struct Encoder::Cost {
+    Eigen::MatrixXd gram;
+    Eigen::VectorXd right;
+};
+
+Encoder::Cost Encoder::costOf(const LogMaterial& material, std::size_t components) const {
+    const LogSamples& samples = space_.samples();
+    const auto used = static_cast<Eigen::Index>(components),
+               terms = static_cast<Eigen::Index>(basis_.mean.size()),
+               channels = static_cast<Eigen::Index>(material.channels());
+    const Eigen::Map<const Eigen::VectorXd> mean(basis_.mean.data(), terms);
+    const Eigen::Map<const Eigen::MatrixXd> exponents(material.exponents.data(), terms, channels);
+    const Eigen::MatrixXd logs = samples.seen.logs(material),
+                          peaks =
+                              samples.peakWeights(samples.peakLogs(material), LogSamples::peakStep),
+                          off = exponents.colwise() - mean, offFew = samples.few() * off,
+                          offSeen = samples.seen.terms * off;
+    const auto seen = metric_->seen.topRows(used), few = metric_->peaks.topRows(used);
+    Eigen::MatrixXd pictures = colourWeight * samples.seen.colours(logs);
+    const Eigen::MatrixXd lit = litWeight * samples.seen.weights(logs);
+    Cost cost{Eigen::MatrixXd(used * channels, used * channels),
+              Eigen::VectorXd::Zero(used * channels)};
+    for (Eigen::Index c = 0; c < channels; ++c) {
+        pictures.col(c * channels + c) += lit.col(c);
+        const auto row = Eigen::seqN(c, used, channels);
+        for (Eigen::Index d = 0; d < channels; ++d) {
+            const Eigen::MatrixXd inPictures = seen * pictures.col(c * channels + d).asDiagonal();
+            cost.gram(row, Eigen::seqN(d, used, channels)) = inPictures * seen.transpose();
+            cost.right(row) += inPictures * offSeen.col(d);
+        }
+        const Eigen::MatrixXd atPeaks = few * peaks.col(c).asDiagonal();
+        cost.gram(row, row) += metric_->gram.topLeftCorner(used, used) + atPeaks * few.transpose();
+        cost.right(row) += metric_->measured.topRows(used) * off.col(c) + atPeaks * offFew.col(c);
+    }
+    return cost;
+}
+
 std::vector<std::uint8_t> Encoder::encode(const LogMaterial& material,
                                           std::size_t components) const {
-    const auto terms = static_cast<Eigen::Index>(basis_.mean.size());
-    const auto used = static_cast<Eigen::Index>(std::min(components, basis_.size()));
-    const Eigen::Map<const Eigen::VectorXd> mean(basis_.mean.data(), terms);
-    const LogSamples& samples = space_.samples();
-    const Eigen::MatrixXd pictures = pictureWeight * samples.seen.weights(material),
-                          peaks = peakWeights(samples, material),
-                          seen = metric_->seen.topRows(used), few = metric_->peaks.topRows(used);
+    const std::size_t used = std::min(components, basis_.size()), channels = material.channels();
+    const Cost cost = costOf(material, used);
+    Eigen::VectorXd most(cost.right.size());  // steps
+    for (Eigen::Index k = 0; k < most.size(); ++k)
+        most[k] = halfRange(basis_.widths[static_cast<std::size_t>(k) / channels]) - 1;
+    const Eigen::VectorXd all = basis_.step * leastInSteps(basis_.step * basis_.step * cost.gram,
+                                                           basis_.step * cost.right, most);
     std::vector<std::uint8_t> codes;
-    for (std::size_t c = 0; c < material.channels(); ++c) {
-        const auto column = static_cast<Eigen::Index>(c);
-        const Eigen::VectorXd off = Eigen::Map<const Eigen::VectorXd>(
-                                        material.exponents.data() + c * basis_.mean.size(), terms) -
-                                    mean;
-        const Eigen::MatrixXd inPictures = seen * pictures.col(column).asDiagonal(),
-                              atPeaks = few * peaks.col(column).asDiagonal();
-        const Eigen::MatrixXd gram = metric_->gram.topLeftCorner(used, used) +
-                                     inPictures * seen.transpose() + atPeaks * few.transpose();
-        const Eigen::VectorXd right = metric_->measured.topRows(used) * off +
-                                      inPictures * (samples.seen.terms * off) +
-                                      atPeaks * (everyFew(samples) * off);
-        const std::vector<std::uint8_t> one =
-            pack(basis_, rounded(basis_, gram, right), material.tops[c]);
+    for (std::size_t c = 0; c < channels; ++c) {
+        std::vector<double> coordinates(basis_.size(), 0.0);
+        for (std::size_t k = 0; k < used; ++k)
+            coordinates[k] = all[static_cast<Eigen::Index>(k * channels + c)];
+        const std::vector<std::uint8_t> one = pack(basis_, coordinates, material.tops[c]);
         codes.insert(codes.end(), one.begin(), one.end());
     }
     return codes;

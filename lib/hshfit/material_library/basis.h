@@ -46,11 +46,12 @@ LogMaterial decode(const Basis& basis, std::span<const std::uint8_t> codes);
 inline constexpr double topsPerLog = 12;
 
 /// The codes of materials in a basis: the least of
-///     |d|^2 + 4 sum of w d^2 + sum of u d^2,   d the error of ln(f + logOffset),
-/// the first in the metric of `space`, w over lit pixels as pictures of the material see it
-/// (SeenPairs), u over pairs as (f cos)^2, with a sum of 1: relative L2 to first order. Coordinates
-/// are rounded one after another, the last first, each to the nearest step of the best that is left
-/// to it (Babai 1986). `space` has to outlive this.
+///     |d|^2 + sum of u d^2 + 2 sum of w d^2 + 48 sum of v e^2
+/// over channels, d the error of ln(f + logOffset): the first in the metric of `space`, u over
+/// pairs as (f cos)^2, with a sum of 1, which is relative L2 to first order, w over lit pixels as
+/// pictures of the material see a channel, and e the difference of their colours that FLIP sees
+/// (SeenPairs). The coordinates of all channels are rounded together (leastInSteps). `space` has to
+/// outlive this.
 class Encoder {
 public:
     Encoder(const Basis& basis, const LogSpace& space);
@@ -61,6 +62,9 @@ public:
 
 private:
     struct Metric;
+    struct Cost;
+    Cost costOf(const LogMaterial& material, std::size_t components) const;
+
     const Basis& basis_;
     const LogSpace& space_;
     std::unique_ptr<const Metric> metric_;

@@ -20,7 +20,6 @@ namespace hshfit::material_library {
 namespace {
 
 constexpr std::array<std::size_t, 9> ladder{5, 10, 15, 20, 30, 40, 60, 80, 120};
-constexpr double margin = 4.0 / 3;  ///< of a width beyond the largest coordinate
 constexpr int leastWidth = 2, mostWidth = 16;
 constexpr double worthIt = 1.03;      ///< error of fewer components over the least
 constexpr double farAway = 3;         ///< times the median distance
@@ -157,7 +156,7 @@ Robust robustPrincipal(const VectorSet& all) {
 /// Bits of one component for coordinates up to `largest`; 0 where one step is more.
 int widthFor(double largest, double step) {
     if (largest * 2 < step) return 0;
-    const int bits = 1 + static_cast<int>(std::ceil(std::log2(margin * largest / step + 1)));
+    const int bits = 1 + static_cast<int>(std::ceil(std::log2(largest / step + 1)));
     return std::clamp(bits, leastWidth, mostWidth);
 }
 
@@ -186,7 +185,8 @@ Widths widthsFor(const std::vector<double>& largest, std::size_t budget) {
         const double middle = (low + high) / 2;
         (fits(at(std::exp2(middle))) ? high : low) = middle;
     }
-    return at(static_cast<float>(std::exp2(high)));
+    // The step of a file, in single precision, is not below the one that fits.
+    return at(std::nextafter(static_cast<float>(std::exp2(high)), 1e30F));
 }
 
 /// Largest magnitude of each of the first coordinates over the materials that count.

@@ -36,7 +36,7 @@ struct LearnedBasis {
 /// metric of `space` and of equal weight. A material's distance is from the first components of
 /// nine tenths of the materials, without its own tenth (cross-validation); one thrice as far as the
 /// median counts for less, by the square of its distance. The widths are those by which `bytes`
-/// hold all coordinates, a third beyond the largest ones, in the smallest steps. `components` that
+/// hold all coordinates in the smallest steps. `components` that
 /// are not stated: of a ladder the fewest whose trial is within 3 % of the least.
 /// With `pictures`, FLIP of the materials that took no part is measured too.
 /// The result depends on the order of the materials, which have to be sorted, and on no number of

@@ -109,9 +109,11 @@ double costOf(const LogMaterial& material, const Eigen::VectorXd& d) {
         peaks += u * errors[k] * errors[k];
         weight += u;
     }
-    const Eigen::VectorXd seen = samples.seen.terms * d;
+    const Eigen::VectorXd seen = (samples.seen.terms * d).cwiseAbs2();
+    const Eigen::MatrixXd lit = samples.seen.logs(material);
     return d.dot(samples.metric * d) + peaks / weight +
-           4 * samples.seen.weights(material).col(0).dot(seen.cwiseAbs2());
+           2 * samples.seen.weights(lit).col(0).dot(seen) +
+           48 * samples.seen.colours(lit).col(0).dot(seen);
 }
 
 TEST(Codes, AreTheBestOfTheirNeighbours) {

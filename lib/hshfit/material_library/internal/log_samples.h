@@ -31,6 +31,15 @@ struct LogSamples {
     Eigen::MatrixXd lower;           ///< L
     SeenPairs seen;
 
+    /// The terms at every `peakStep`th pair, by which codes see peaks.
+    static constexpr Eigen::Index peakStep = 8;
+    Eigen::Map<const linear_algebra::RowMajor, 0, Eigen::OuterStride<>> few() const;
+    /// Weights at every `step`th pair by (f c)^2, c = cos(theta_i) and f by its ln(f + logOffset)
+    /// there, that add up to 1: [pair][channel].
+    Eigen::MatrixXd peakWeights(const Eigen::MatrixXd& logs, Eigen::Index step) const;
+    /// ln(f + logOffset) of a material at every `peakStep`th pair, [pair][channel].
+    Eigen::MatrixXd peakLogs(const LogMaterial& material) const;
+
     /// A^-1 b, column by column.
     Eigen::MatrixXd solve(Eigen::MatrixXd right) const;
 };
