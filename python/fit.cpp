@@ -182,7 +182,8 @@ void bindResult(py::module_& module) {
     using jobs::Fitted;
     py::class_<FittedParameter>(module, "FittedParameter",
                                 "A free parameter after a fit, with its standard error.")
-        .def_readonly("name", &FittedParameter::name, "\"ggx.alpha\"")
+        .def_readonly("name", &FittedParameter::name,
+                      "\"ggx.alpha\"; \"ggx1.alpha\" where ggx stands twice")
         .def_readonly("channel", &FittedParameter::channel, "\"R\"; empty: all channels")
         .def_readonly("value", &FittedParameter::value)
         .def_readonly("bound", &FittedParameter::bound,

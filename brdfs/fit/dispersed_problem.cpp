@@ -33,13 +33,16 @@ std::vector<Named> parametersOf(const ParametricSum& sum) {
     return all;
 }
 
-/// The parameter that a law names: by its name, or by its key where that is the only one.
+/// The parameter that a law names: by its name, or by its key or its name without a number where
+/// that is the only one.
 std::size_t placeOf(const LawStatement& law, const std::vector<Named>& parameters) {
     std::vector<std::size_t> found;
     for (std::size_t i = 0; i < parameters.size(); ++i)
         if (parameters[i].name == law.parameter) return i;
     for (std::size_t i = 0; i < parameters.size(); ++i)
-        if (parameters[i].key == law.parameter) found.push_back(i);
+        if (parameters[i].key == law.parameter ||
+            withoutNumber(parameters[i].name) == law.parameter)
+            found.push_back(i);
     std::vector<std::string_view> known;
     for (const Named& own : parameters) known.push_back(own.name);
     if (found.size() > 1)

@@ -4,6 +4,7 @@
 #include <brdfs/catalog/preset.h>
 #include <brdfs/composed/spectrum.h>
 #include <brdfs/fit/dispersed_problem.h>
+#include <brdfs/fit/split_models.h>
 #include <brdfs/presets/preset_json.h>
 #include <hshfit/error.h>
 
@@ -32,6 +33,14 @@ std::vector<double> coefficientsIn(const DispersedModel& model,
         }
     }
     return all;
+}
+
+/// Files of earlier versions have no number where a model stands more than once; their laws are in
+/// the order of the parameters, as all are.
+void addNumbers(const DispersedModel& model, std::vector<LawStatement>& laws) {
+    for (std::size_t i = 0; i < std::min(laws.size(), model.parameterCount()); ++i)
+        if (withoutNumber(model.law(i).parameter) == laws[i].parameter)
+            laws[i].parameter = model.law(i).parameter;
 }
 
 }  // namespace
@@ -67,6 +76,8 @@ std::unique_ptr<Brdf> openDispersed(std::string_view text, const std::string& wh
         for (const JsonFields& law : laws)
             statements.push_back(
                 parseDispersion(law.word("parameter") + "=" + law.word("law")).at(0));
+        addNumbers(DispersedModel(fit.word("model"), dispersion.flag("isotropic"), measured, {}),
+                   statements);
         const DispersedModel model(fit.word("model"), dispersion.flag("isotropic"), measured,
                                    statements);
         if (laws.size() != model.parameterCount())

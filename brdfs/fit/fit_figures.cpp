@@ -321,12 +321,9 @@ std::vector<NamedBrdf> termsOf(const FitResult& result) {
     if (result.spectrum.size() > 1) return {};
     const std::string& spec = result.spectrum.empty() ? result.spec : result.spectrum[0].spec;
     std::vector<NamedBrdf> terms;
-    std::map<std::string, int> taken;
-    for (const std::string& term : splitModels(spec)) {
-        std::string name = term.substr(0, term.find(':'));
-        const int times = ++taken[name];
-        if (times > 1) name += fmt::format(" ({})", times);
-        terms.push_back({std::move(name), openModels(term)});
+    const std::vector<std::string> parts = splitModels(spec), names = termNames(spec);
+    for (std::size_t t = 0; t < parts.size(); ++t) {
+        terms.push_back({names[t], openModels(parts[t])});
         if (terms.back().brdf->channels().count() > 1) return {};
     }
     if (terms.size() < 2) terms.clear();

@@ -4,8 +4,6 @@
 #include <brdfs/fit/split_models.h>
 #include <brdfs/rows/spec.h>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cassert>
 #include <utility>
@@ -13,17 +11,16 @@
 namespace hshfit::brdfs {
 
 std::vector<HeldValue> heldValues(std::string_view model, bool isotropic) {
-    const std::vector<std::string> parts = splitModels(model);
+    const std::vector<std::string> parts = splitModels(model), names = termNames(model);
     std::vector<HeldValue> held;
-    for (const std::string& part : parts) {
+    for (std::size_t term = 0; term < parts.size(); ++term) {
+        const std::string& part = parts[term];
         const std::size_t colon = part.find(':');
         const auto found =
             std::ranges::find(models(), std::string_view(part).substr(0, colon), &Model::name);
         assert(found != models().end());
         const Model& own = *found;
-        const auto named = [&](std::string_view key) {
-            return parts.size() > 1 ? fmt::format("{}.{}", own.name, key) : std::string(key);
-        };
+        const auto named = [&](std::string_view key) { return parameterName(names, term, key); };
         // A metal, which stands for n and k at each wavelength, is no parameter of the model.
         std::string text;
         for (std::size_t at = colon; at < part.size(); at = part.find(',', at + 1)) {

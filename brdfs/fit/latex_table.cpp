@@ -49,8 +49,7 @@ std::optional<std::string> unitOfLaw(const FitResult& result, const std::string&
     return std::nullopt;
 }
 
-/// "ggx.alpha" of "lambert+ggx": the term, whose number follows its name where there are several,
-/// and the key.
+/// By the parameter's name in the sum of models that was fitted.
 std::string unitOf(const FitResult& result, const std::string& name) {
     if (const auto unit = unitOfLaw(result, name)) return *unit;
     if (name.starts_with("incidence zero") || name.starts_with("detector zero")) return "$^\\circ$";
@@ -59,9 +58,10 @@ std::string unitOf(const FitResult& result, const std::string& name) {
     const std::size_t dot = parameter.find('.');
     if (dot == parameter.npos) return unitOf(terms.front(), parameter);
     const std::string model = parameter.substr(0, dot), key = parameter.substr(dot + 1);
-    for (const std::string& term : terms)
-        if (model.starts_with(term.substr(0, term.find(':')))) return unitOf(term, key);
-    return "1";
+    const std::vector<std::string> names = termNames(result.model);
+    const auto own = std::ranges::find(names, model);
+    return own == names.end() ? "1"
+                              : unitOf(terms[static_cast<std::size_t>(own - names.begin())], key);
 }
 
 /// An offset and a dark signal of the instrument are in the unit of f, its other terms are shares.

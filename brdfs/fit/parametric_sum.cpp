@@ -127,7 +127,7 @@ void Columns::eval(const Direction& wo, DirectionBatch wi, double* out) const {
 ParametricSum::ParametricSum(std::string_view spec, bool isotropic, std::size_t channel,
                              bool coloured)
     : channel_(channel), coloured_(coloured) {
-    const std::vector<std::string> parts = splitModels(spec);
+    const std::vector<std::string> parts = splitModels(spec), names = termNames(spec);
     for (const std::string& part : parts) {
         const std::size_t colon = part.find(':');
         const Model& model = modelNamed(std::string_view(part).substr(0, colon));
@@ -148,7 +148,7 @@ ParametricSum::ParametricSum(std::string_view spec, bool isotropic, std::size_t 
             freeParameters(model, term.stated, isotropic, parts.size() > 1);
         for (const FreeParameter& free : all) {
             const std::string& key = free.keys.front();
-            const std::string name = parts.size() > 1 ? fmt::format("{}.{}", model.name, key) : key;
+            const std::string name = parameterName(names, terms_.size(), key);
             const bool linearised = coloured && free.albedo && model.columns &&
                                     isSeparable(model, term.stated, all, key);
             if (free.linear || linearised) {

@@ -16,7 +16,7 @@ namespace hshfit::brdfs {
 /// logarithmic.
 struct ShapeParameter {
     std::size_t term = 0;  ///< of the sum
-    std::string name;      ///< "ggx.alpha"; as the key alone if the sum has one term
+    std::string name;      ///< "ggx.alpha": parameterName
     FreeParameter free;
     double offset = 0;  ///< keeps the logarithm finite where the least value is 0
 

@@ -3,7 +3,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cctype>
 #include <cmath>
+#include <set>
+#include <string>
 
 namespace {
 
@@ -166,6 +169,50 @@ TEST_F(Fit, CoefficientFilesAreData) {
         const double truth = parameter["name"] == "ward.ks" ? 0.1 : 0.4;
         EXPECT_NEAR(parameter["value"], truth, 0.04 * truth) << parameter["name"];
     }
+}
+
+using Names = std::multiset<std::string>;
+
+Names namesOf(const Json& list) {
+    Names names;
+    for (const Json& own : list) names.insert(own["name"].get<std::string>());
+    return names;
+}
+
+TEST_F(Fit, LobesOfOneModelAreNumbered) {
+    const std::string job = "fit ggx:alpha=.3,F0=.5 --samples 400 --starts 2 --accept --model ";
+    const Answer twice = run(job + "ggx:kd=0+ggx -o " + path("two.json"));
+    ASSERT_EQ(twice.code, 0) << twice.err;
+    const Json fit = Json::parse(read(path("two.json")))["fit"];
+    const Names two{"ggx1.F0", "ggx1.alpha", "ggx1.ks", "ggx2.F0", "ggx2.alpha", "ggx2.ks"};
+    EXPECT_EQ(namesOf(fit["parameters"]), two);
+    EXPECT_EQ(namesOf(fit["held"]).count("ggx1.kd"), 1u) << fit["held"];
+    EXPECT_EQ(namesOf(fit["held"]).count("ggx.kd"), 0u) << fit["held"];
+    for (const std::string& name : two)
+        EXPECT_NE(twice.out.find("\n  " + name + " "), std::string::npos) << twice.out;
+    // One lobe made the data, so that two are not told apart.
+    ASSERT_FALSE(fit["ambiguous"].empty());
+    for (const Json& set : fit["ambiguous"])
+        for (const Json& name : set) EXPECT_TRUE(two.contains(name.get<std::string>())) << set;
+    const Answer mixed = run(job + "ggx+lambert+ggx --json");
+    ASSERT_EQ(mixed.code, 0) << mixed.err;
+    Names three = two;
+    three.insert("lambert.kd");
+    EXPECT_EQ(namesOf(Json::parse(mixed.out)["fit"]["parameters"]), three);
+    // Names of single lobes have no number.
+    const Answer one = run(job + "lambert+ggx --json");
+    ASSERT_EQ(one.code, 0) << one.err;
+    EXPECT_EQ(namesOf(Json::parse(one.out)["fit"]["parameters"]),
+              (Names{"lambert.kd", "ggx.F0", "ggx.alpha", "ggx.ks"}));
+    EXPECT_EQ(run("eval " + path("two.json") + " --wi 30,0 --wo 30,180").code, 0);
+}
+
+// A number behind a name could be part of it otherwise.
+TEST_F(Fit, NoModelEndsInADigit) {
+    const Json listed = Json::parse(run("list models --json").out);
+    ASSERT_FALSE(listed["models"].empty());
+    for (const Json& model : listed["models"])
+        EXPECT_FALSE(std::isdigit(model["name"].get<std::string>().back())) << model["name"];
 }
 
 // A preset may hold a sum of models, and nothing else: no file, not even itself.

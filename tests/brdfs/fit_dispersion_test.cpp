@@ -189,6 +189,11 @@ TEST(DispersionLaw, WrongStatementsNameWhatWouldBeRight) {
             DispersedModel("ggx + ggx:alpha=.1", true, {400, 500}, parseDispersion("ks=poly:1"));
         },
         "several terms");
+    refused(
+        [] {
+            DispersedModel("ggx + ggx", true, {400, 500}, parseDispersion("ggx.ks=poly:1"));
+        },
+        "ggx1.ks");
 }
 
 TEST(DispersedFit, WithTheLawsOfThePlainFitItIsThePlainFit) {
@@ -357,6 +362,36 @@ TEST(DispersedFit, OpensBetweenItsWavelengthsWhereTheLawsAllow) {
     EXPECT_THROW(openDispersed(broken.dump(), "f.json", "450"), InputError);
     broken["fit"]["dispersion"]["laws"].erase(1);
     EXPECT_THROW(openDispersed(broken.dump(), "f.json", "450"), InputError);
+}
+
+// A polynomial of degree 1 has the values at both ends of the band as coefficients.
+TEST(DispersedFit, OpensWithAModelThatStandsTwice) {
+    const auto presetOf = [](const std::string& first, const std::string& second) {
+        const auto line = [](double nanometres) {
+            return nlohmann::json{{"wavelength", nanometres}, {"spec", "lambert:kd=.5"}};
+        };
+        const auto law = [](const std::string& parameter, double low, double high) {
+            return nlohmann::json{
+                {"parameter", parameter}, {"law", "poly:1"}, {"coefficients", {low, high}}};
+        };
+        return nlohmann::json{
+            {"format", "hshfit-preset"},
+            {"version", 1},
+            {"spectrum", {line(400), line(500), line(600)}},
+            {"fit",
+             {{"model", "lambert + lambert"},
+              {"dispersion",
+               {{"isotropic", true}, {"laws", {law(first, .1, .3), law(second, .25, .35)}}}}}}}
+            .dump();
+    };
+    // The second is a file without numbers, as earlier versions wrote them.
+    for (const auto& [first, second] :
+         {std::pair{"lambert1.kd", "lambert2.kd"}, std::pair{"lambert.kd", "lambert.kd"}}) {
+        const auto brdf = openDispersed(presetOf(first, second), "f.json", "550");
+        EXPECT_NEAR(evaluate(*brdf, {0, 0, 1}, {0, 0, 1})[0], (0.25 + 0.325) / pi, 1e-9) << first;
+    }
+    EXPECT_THROW(openDispersed(presetOf("lambert2.kd", "lambert1.kd"), "f.json", "550"),
+                 InputError);
 }
 
 TEST(DispersedFit, MetalsKeepTheirTabulatedIndex) {

@@ -133,6 +133,18 @@ TEST_F(FitReports, PagesHaveTheFit) {
     EXPECT_EQ(drawn, 16u);
 }
 
+TEST_F(FitReports, LobesOfOneModelAreNumbered) {
+    const Answer got =
+        run("fit ggx:alpha=.3,F0=.5 --model ggx+ggx --samples 400 --starts 2 --accept -o " +
+            path("report"));
+    ASSERT_EQ(got.code, 0) << got.err;
+    for (const std::string name :
+         {"ggx1.F0", "ggx1.alpha", "ggx1.ks", "ggx2.F0", "ggx2.alpha", "ggx2.ks"}) {
+        EXPECT_TRUE(has(read(path("report/comparison.html")), "<td>" + name + "</td>")) << name;
+        EXPECT_TRUE(has(read(path("report/parameters.tex")), name + " &")) << name;
+    }
+}
+
 class Certificates : public FitReports {
 protected:
     std::string fitTo(const std::string& pdf, const std::string& more = "") const {

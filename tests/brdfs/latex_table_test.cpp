@@ -101,6 +101,18 @@ TEST(LatexTable, HasTheErrorsOfABudget) {
     EXPECT_TRUE(has("combined with the budget")) << table;
 }
 
+// A lobe that is normalised has an albedo, the other a height.
+TEST(LatexTable, UnitsAreThoseOfTheTermThatHasTheParameter) {
+    const auto unitOf = [](const std::string& model, const std::string& parameter) {
+        OneParameter one(parameter, 0.5, 0.05);
+        one.report.result.model = model;
+        return latexTable(one.report).find("& sr$^{-1}$") != std::string::npos ? "1/sr" : "1";
+    };
+    const std::string two = "phong:normalized=true + phong:normalized=false";
+    EXPECT_EQ(unitOf(two, "phong1.ks"), "1");
+    EXPECT_EQ(unitOf(two, "phong2.ks"), "1/sr");
+}
+
 TEST(LatexTable, ZerosOfAnglesAreDegrees) {
     const std::string table = latexTable(OneParameter("incidence zero", 0.02, 0.01).report);
     EXPECT_NE(table.find("& $^\\circ$"), table.npos) << table;
