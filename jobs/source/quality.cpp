@@ -11,6 +11,8 @@
 #include <hshfit/pictures/poor.h>
 #include <hshfit/projection/one_basis.h>
 #include <hshfit/representation/forms/represented_brdf.h>
+#include <hshfit/representation/hemisphere_gram.h>
+#include <hshfit/representation/split.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -59,57 +61,102 @@ OutgoingSet fewOf(const CoefficientHead& head) {
     return OutgoingSet::parabolic(trialTexels, trialTexels);
 }
 
-/// Whether the squares of the coefficients say how much energy a form captures.
-bool hasSquares(const Representation& kept) {
-    const CoefficientHead& head = kept.head;
-    return kept.kind() == Kind::outgoing && kept.added.empty() && head.energy.finite &&
-           head.energy.value > 0 && bases::find(head.basis).orthonormal;
-}
-
-/// By the squares of the coefficients of an orthonormal basis. None for other forms and bases.
-std::optional<double> capturedBy(const Representation& kept) {
-    if (!hasSquares(kept)) return std::nullopt;
-    const CoefficientHead& head = kept.head;
-    const Coefficients c = decoded(kept);
-    const std::size_t size = c.channels.count() * static_cast<std::size_t>(c.slots());
-    double captured = 0;
-    for (std::size_t k = 0; k < c.outgoing.size(); ++k) {
-        const double* values = c.at(k, 0);
-        captured +=
-            c.outgoing.solidAngles[k] * std::inner_product(values, values + size, values, 0.0);
-    }
-    return captured / head.energy.value;
-}
-
-/// Whether a share is measured over pairs of directions, not at the outgoing directions of a
-/// result.
-bool isOverPairs(const OutgoingSet& set) {
-    constexpr std::size_t few = 64;
-    return set.directions.empty() || set.size() > few;
-}
+/// The change of a form by a step that a share with six digits does not show.
+constexpr double notShown = 1e-7;
 
 std::string_view functionOf(Quantity quantity) {
     return quantity == Quantity::brdfCosine ? "f cos(theta_i)" : "f";
 }
 
-std::string_view measuredFunction(const OutgoingSet& set) {
-    return isOverPairs(set) ? "f cos(theta_i) cos(theta_o)" : "f cos(theta_i)";
-}
-
-/// The share of measuredFunction that `result` captures.
+/// 1 - relative L2^2 of f or f cos(theta_i), as `compare` measures it.
 std::optional<double> measuredShare(const Brdf& source, const Brdf& result, const OutgoingSet& set,
-                                    const std::optional<PairSummary>& pairs) {
+                                    Quantity quantity) {
+    const auto metric =
+        selectMetrics(quantity == Quantity::brdfCosine ? "relative-l2-cosine" : "relative-l2");
     try {
-        if (isOverPairs(set)) {
-            const double left = (pairs ? *pairs : summaryOf(source, result)).energyLeft.value;
-            return std::isfinite(left) ? std::optional(1 - left) : std::nullopt;
-        }
-        const auto metric = selectMetrics("relative-l2-cosine");
-        const auto error = compare(source, result, set, metric, {.level = 2})[0].value;
+        const auto error = compare(source, result, set, metric)[0].value;
         return error && std::isfinite(*error) ? std::optional(1 - *error * *error) : std::nullopt;
     } catch (const NumericError&) {
         return std::nullopt;
     }
+}
+
+/// Over pairs of directions, of f cos(theta_i) cos(theta_o).
+std::optional<double> shareOverPairs(const Brdf& source, const Brdf& result,
+                                     const std::optional<PairSummary>& pairs) {
+    try {
+        const double left = (pairs ? *pairs : summaryOf(source, result)).energyLeft.value;
+        return std::isfinite(left) ? std::optional(1 - left) : std::nullopt;
+    } catch (const NumericError&) {
+        return std::nullopt;
+    }
+}
+
+/// Coefficients whose squares are the energy in the norm of their basis.
+std::vector<double> normalised(const Coefficients& c) {
+    std::vector<double> values = c.values;
+    if (bases::find(c.basis).orthonormal) return values;
+    const auto basis = bases::make(c.basis, c.order, {.condonShortley = c.condonShortley});
+    const HemisphereGram gram(*basis);
+    for (std::size_t at = 0; at < values.size(); at += c.slots()) gram.whiten(values.data() + at);
+    return values;
+}
+
+/// The products of coefficients, summed with the solid angles of the outgoing directions.
+double product(const OutgoingSet& set, const std::vector<double>& a, const std::vector<double>& b) {
+    const auto size = static_cast<std::ptrdiff_t>(a.size() / set.size());
+    double sum = 0;
+    for (std::size_t k = 0; k < set.size(); ++k) {
+        const auto first = static_cast<std::ptrdiff_t>(k) * size;
+        sum += set.solidAngles[k] * std::inner_product(a.begin() + first, a.begin() + first + size,
+                                                       b.begin() + first, 0.0);
+    }
+    return sum;
+}
+
+/// A form whose coefficients c are no longer those that were projected, c0, of the remainder
+/// r = f - added: the energy that it misses is that of r, less 2 c c0, plus c c.
+std::optional<double> shareOfChanged(const Representation& kept, const std::vector<double>& c,
+                                     const Brdf& source) {
+    const CoefficientHead& head = kept.head;
+    const auto basis = bases::make(head.basis, head.order, {.condonShortley = head.condonShortley});
+    const auto projected = [&](const Brdf& brdf) {
+        return hshfit::project(brdf, *basis, head.outgoing,
+                               {.quantity = head.quantity, .tolerance = head.tolerance})
+            .coefficients;
+    };
+    const bool isWhole = kept.added.empty();
+    const Remainder remainder(source, isWhole ? nullptr : sourceOpener()(kept.added), false);
+    const Coefficients before = projected(remainder);
+    const Energy energy = isWhole ? before.energy : projected(source).energy;
+    if (!energy.finite || !(energy.value > 0)) return std::nullopt;
+    const double left = before.energy.value - 2 * product(head.outgoing, c, normalised(before)) +
+                        product(head.outgoing, c, c);
+    return 1 - left / energy.value;
+}
+
+std::optional<double> shareByCoefficients(const Representation& kept, const Brdf& source) {
+    const CoefficientHead& head = kept.head;
+    const std::vector<double> c = normalised(decoded(kept));
+    const bool isUnchanged =
+        kept.added.empty() && std::ranges::all_of(kept.steps, [](const RepresentationStep& step) {
+            return step.change <= notShown;
+        });
+    if (isUnchanged)
+        return head.energy.value > 0
+                   ? std::optional(product(head.outgoing, c, c) / head.energy.value)
+                   : std::nullopt;
+    try {
+        return shareOfChanged(kept, c, source);
+    } catch (const NumericError&) {  // a bound of the evaluations that the file was made without
+        return measuredShare(source, *reconstruct(kept, sourceOpener()), head.outgoing,
+                             head.quantity);
+    }
+}
+
+/// The quantity whose energy exists.
+Quantity capturedQuantity(const CoefficientHead& head) {
+    return head.energy.finite ? head.quantity : Quantity::brdfCosine;
 }
 
 std::string fitAgain(const FitCall& call, const std::string& model, std::vector<Setting> settings) {
@@ -198,24 +245,30 @@ nlohmann::ordered_json poorJson(const Poor& poor) {
 std::optional<double> capturedShare(const Projection& projection, const Brdf& source) {
     const Coefficients& c = projection.coefficients;
     if (!c.leastSquares && !c.energy.finite)
-        return measuredShare(source, Reconstruction(c), c.outgoing, {});
+        return measuredShare(source, Reconstruction(c), c.outgoing, capturedQuantity(c));
     return hshfit::capturedShare(projection);
 }
 
 std::optional<double> capturedShare(const Representation& kept, const Brdf& source,
                                     const std::optional<PairSummary>& pairs) {
-    if (const auto share = capturedBy(kept)) return share;
-    return measuredShare(source, *reconstruct(kept, sourceOpener()), kept.head.outgoing, pairs);
+    const CoefficientHead& head = kept.head;
+    if (kept.kind() == Kind::outgoing && head.energy.finite)
+        return shareByCoefficients(kept, source);
+    const auto result = reconstruct(kept, sourceOpener());
+    if (kept.kind() == Kind::halfway) return shareOverPairs(source, *result, pairs);
+    return measuredShare(
+        source, *result,
+        kept.kind() == Kind::outgoing ? head.outgoing : comparedOutgoing(head.isotropic),
+        capturedQuantity(head));
 }
 
 std::string_view capturedFunction(const Projection& projection) {
-    const Coefficients& c = projection.coefficients;
-    return !c.leastSquares && !c.energy.finite ? measuredFunction(c.outgoing)
-                                               : functionOf(c.quantity);
+    return functionOf(capturedQuantity(projection.coefficients));
 }
 
 std::string_view capturedFunction(const Representation& kept) {
-    return hasSquares(kept) ? functionOf(kept.head.quantity) : measuredFunction(kept.head.outgoing);
+    return kept.kind() == Kind::halfway ? "f cos(theta_i) cos(theta_o)"
+                                        : functionOf(capturedQuantity(kept.head));
 }
 
 std::string betterCall(const CoefficientHead& head, const Brdf& source, const std::string& output) {

@@ -31,12 +31,13 @@ struct Poor {
 /// {"reason": …, "better": …}, and "to_try" where there is one.
 nlohmann::ordered_json poorJson(const Poor& poor);
 
-/// The share of its source's energy that a result captures. For plain coefficients and orthonormal
-/// bases it follows from the squares of the coefficients. For other bases, for forms in which both
-/// directions are expanded, and where the energy does not exist, it is measured: by f cos(theta_i)
-/// if the result has few outgoing directions, else by f cos(theta_i) cos(theta_o) over `pairs`,
-/// which are computed if none are given. None where the source is 0 or not finite, and for least
-/// squares, which have a residual instead.
+/// The share of its source's energy that a result captures: 1 - relative L2^2 of the quantity that
+/// was projected, in the norm of the basis at the outgoing directions of the result, also where
+/// coefficients were changed or something was taken out. Forms in which both directions are
+/// expanded have it at the directions over which `compare` compares. Where that energy does not
+/// exist it is the share of f cos(theta_i); the halfway form has that of f cos(theta_i)
+/// cos(theta_o), over `pairs`, which are computed if none are given. None where the source is 0 or
+/// not finite, and for least squares, which have a residual instead.
 std::optional<double> capturedShare(const Projection& projection, const Brdf& source);
 std::optional<double> capturedShare(const Representation& kept, const Brdf& source,
                                     const std::optional<PairSummary>& pairs = {});
