@@ -1,5 +1,6 @@
 #include "render.h"
 
+#include <jobs/common/clock.h>
 #include <jobs/common/inputs.h>
 #include <jobs/source/source.h>
 
@@ -18,6 +19,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -197,6 +199,27 @@ std::map<std::string, std::string> attributesOf(const Rendered& rendered) {
     return attributes;
 }
 
+/// Tells the listener once, after a while, how to end an integration that takes long.
+class SlowNote {
+public:
+    SlowNote(std::string brdf, const RenderOptions& options, const Listener& listener)
+        : brdf_(std::move(brdf)), options_(options), listener_(listener) {}
+
+    void update(std::size_t done, std::size_t total) {
+        const double seconds = secondsSince(start_);
+        if (said_ || seconds < slowSeconds) return;
+        const std::string text = slowRemark(brdf_, seconds, done, total, options_);
+        if (!text.empty() && !said_.exchange(true)) listener_.say(text);
+    }
+
+private:
+    const std::string brdf_;
+    const RenderOptions& options_;
+    const Listener& listener_;
+    const Clock::time_point start_ = Clock::now();
+    std::atomic<bool> said_ = false;
+};
+
 /// The steps of `render`, in order, with the points and lights that all materials share.
 class Renderer {
 public:
@@ -229,9 +252,15 @@ public:
         for (Material& material : materials_) {
             const std::string name = material.brdf->name();
             if (light_) {
-                material.truth = renderByIntegration(*material.brdf, points_, view_, *light_,
-                                                     {.tolerance = options_.bound()},
-                                                     listener_.part(name), limitOf(material));
+                SlowNote slow(name, options_, listener_);
+                const auto steps = [&slow, shown = listener_.part(name)](std::size_t done,
+                                                                         std::size_t total) {
+                    if (shown) shown(done, total);
+                    slow.update(done, total);
+                };
+                material.truth =
+                    renderByIntegration(*material.brdf, points_, view_, *light_,
+                                        {.tolerance = options_.bound()}, steps, limitOf(material));
                 check(material, material.truth->picture, 0);
             }
             material.projections = projectionsOf(*material.brdf, columns_, options_,
@@ -341,6 +370,18 @@ std::string kindName(RenderedPicture::Kind kind) {
         default:
             return "difference";
     }
+}
+
+std::string slowRemark(const std::string& brdf, double seconds, std::size_t done, std::size_t total,
+                       const RenderOptions& options) {
+    if (options.seconds || done == 0 || done >= total) return {};
+    const double left = seconds * static_cast<double>(total - done) / static_cast<double>(done);
+    if (left < slowSeconds) return {};
+    return fmt::format(
+        "{}: integration has taken {:.0f} s and needs some {:.0f} s more; {} above "
+        "{:g} or {} ends it sooner",
+        brdf, seconds, left, Setting{"RenderOptions::tolerance"}, options.bound(),
+        Setting{"RenderOptions::seconds"});
 }
 
 Rendered render(const std::vector<std::string>& specs, const std::string& output,

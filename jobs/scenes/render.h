@@ -79,6 +79,12 @@ struct Rendered {
 
 std::string kindName(RenderedPicture::Kind kind);
 
+/// Seconds of an integration, passed and left, from which on `render` says how to end it sooner.
+inline constexpr double slowSeconds = 10;
+/// That remark, after `done` of `total` steps; empty where little is left or the time has an end.
+std::string slowRemark(const std::string& brdf, double seconds, std::size_t done, std::size_t total,
+                       const RenderOptions& options);
+
 /// Pictures of materials under any light, a row for each: by integration, then for each basis,
 /// order and exposure by coefficients and, with both ways, their difference from integration.
 /// Folders stand for their measured and coefficient files. `output`: .png or .exr; differences are

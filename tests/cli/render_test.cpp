@@ -154,6 +154,25 @@ TEST_F(Cli, RenderSaysThatAnOrderWhichIsEnoughMissesThePicture) {
     EXPECT_EQ(std::count(answer.err.begin(), answer.err.end(), '\n'), 1);
 }
 
+/// A series of few bands is below 0 at places, and its radiance cancels to almost nothing at some
+/// points. It is smoother than its model and must not take much longer.
+TEST_F(Cli, RenderOfCoefficientsTakesAboutAsManyEvaluationsAsOfTheirModel) {
+    const std::string file = path("c.json");
+    ASSERT_EQ(run("project phong:exponent=22 --order 4 --outgoing 12 -o " + file).code, 0);
+    std::vector<double> evaluations;
+    for (const std::string& spec : {std::string("phong:exponent=22"), file}) {
+        const Answer answer =
+            run("render " + spec +
+                " --light sky:type=12,elevation=40+sun:elevation=40,irradiance=3 --size 16 "
+                "--samples 1 --by integration --tolerance 0.005 --json --force -o " +
+                path("c.exr"));
+        ASSERT_EQ(answer.code, 0) << answer.err;
+        EXPECT_EQ(answer.err.find("cut short"), std::string::npos) << answer.err;
+        evaluations.push_back(Json::parse(answer.out)["pictures"][0]["evaluations"]);
+    }
+    EXPECT_LT(evaluations[1], 2 * evaluations[0]);
+}
+
 TEST_F(Cli, RenderByIntegrationStatesTheErrorsOfItsPixels) {
     const std::string job =
         "render ggx:alpha=.3 --light sky:type=12,elevation=40 --by integration --size 16 "

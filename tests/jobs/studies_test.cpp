@@ -15,6 +15,7 @@
 #include <jobs/fits/ltc.h>
 #include <jobs/lighting/rotate.h>
 #include <jobs/scenes/plan.h>
+#include <jobs/scenes/render.h>
 #include <jobs/scenes/spheres.h>
 #include <jobs/studies/compare.h>
 #include <jobs/studies/eval.h>
@@ -234,6 +235,19 @@ TEST_F(Studies, SpheresAreThePictureOfTheProgram) {
         EXPECT_FALSE(read(path("job" + extension)).empty());
         EXPECT_EQ(read(path("job" + extension)), read(path("program" + extension)));
     }
+}
+
+TEST_F(Studies, SlowIntegrationNamesTheOptionsThatEndItSooner) {
+    jobs::RenderOptions options;
+    options.tolerance = 0.01;
+    // A tenth of the steps in 12 s: nine tenths are left, 108 s.
+    const std::string remark = jobs::slowRemark("lambert", 12, 10, 100, options);
+    EXPECT_NE(remark.find("lambert: integration has taken 12 s"), std::string::npos) << remark;
+    for (const char* part : {"108 s more", "--tolerance above 0.01", "--seconds"})
+        EXPECT_NE(remark.find(part), std::string::npos) << remark;
+    EXPECT_EQ(jobs::slowRemark("lambert", 12, 90, 100, options), "");  // 1.3 s left
+    options.seconds = 60;
+    EXPECT_EQ(jobs::slowRemark("lambert", 12, 10, 100, options), "");
 }
 
 }  // namespace

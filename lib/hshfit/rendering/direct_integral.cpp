@@ -47,6 +47,34 @@ bool tooWide(double width, int nodesAcross, const Direction& local, std::span<co
     });
 }
 
+/// A sum over directions in R, G and B, and the magnitude of its terms below 0.
+struct SignedSum {
+    Rgb value{};
+    double below = 0;
+};
+
+void add(Rgb& to, const Rgb& value) {
+    for (std::size_t c = 0; c < 3; ++c) to[c] += value[c];
+}
+void add(SignedSum& to, const SignedSum& term) {
+    add(to.value, term.value);
+    to.below += term.below;
+}
+double magnitude(const Rgb& value) {
+    return std::abs(value[0]) + std::abs(value[1]) + std::abs(value[2]);
+}
+double distance(const Rgb& a, const Rgb& b) {
+    return std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]);
+}
+
+/// The sum of the magnitudes of the terms, that the tolerance is a share of. Series of coefficients
+/// are below 0 at places: their radiance may cancel to almost nothing, and a share of it would take
+/// cells without end.
+double scaleOf(const SignedSum& sum) {
+    if (!(sum.below > 0)) return magnitude(sum.value);
+    return sum.value[0] + sum.value[1] + sum.value[2] + 2 * sum.below;
+}
+
 /// f at directions of the frame, times cosine and flux.
 class Evaluator {
 public:
@@ -76,12 +104,16 @@ public:
         }
     }
     /// The sum over directions first to last - 1.
-    Rgb sum(std::size_t first, std::size_t last) const {
-        Rgb sum{};
+    SignedSum sum(std::size_t first, std::size_t last) const {
+        SignedSum sum;
         for (std::size_t k = first; k < last; ++k) {
             if (!(z_[k] > 0)) continue;
-            for (std::size_t c = 0; c < 3; ++c)
-                sum[c] += flux_[k][c] * z_[k] * f_[(channels_ == 1 ? 0 : c) * x_.size() + k];
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double value =
+                    flux_[k][c] * z_[k] * f_[(channels_ == 1 ? 0 : c) * x_.size() + k];
+                sum.value[c] += value;
+                if (value < 0) sum.below -= value;
+            }
         }
         return sum;
     }
@@ -94,16 +126,6 @@ private:
     std::vector<double> x_, y_, z_, f_;
     std::vector<Rgb> flux_;
 };
-
-void add(Rgb& to, const Rgb& value) {
-    for (std::size_t c = 0; c < 3; ++c) to[c] += value[c];
-}
-double magnitude(const Rgb& value) {
-    return std::abs(value[0]) + std::abs(value[1]) + std::abs(value[2]);
-}
-double distance(const Rgb& a, const Rgb& b) {
-    return std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]);
-}
 
 constexpr int nodesAcross(const LightCells&) {
     return 1;
@@ -122,18 +144,19 @@ void addNodes(const PanelCells& cells, const PanelCell& cell, const Direction&, 
     });
 }
 
-/// The integral over cells at one point, added to `result`.
+/// The integral over cells at one point, added to `total`.
 template <class Cells, class Cell>
 class CellIntegral {
 public:
     CellIntegral(const Cells& cells, const Brdf& brdf, const Frame& frame, const Direction& wo,
-                 const IntegrationOptions& options, PointRadiance& result)
+                 const IntegrationOptions& options, SignedSum& total, PointRadiance& result)
         : cells_(cells),
           frame_(frame),
           options_(options),
           horizon_(nodesAcross(cells) * widestAtHorizon(options.tolerance)),
           peaks_(peaksOf(brdf, wo)),
           evaluator_(brdf, wo, result),
+          total_(total),
           result_(result) {}
 
     void run() {
@@ -147,7 +170,7 @@ private:
     struct Item {
         Cell cell;
         Direction local;
-        Rgb value{};
+        SignedSum sum = {};
     };
 
     /// Unless all of it is below the horizon.
@@ -165,7 +188,7 @@ private:
         }
         evaluator_.evaluate();
         for (std::size_t k = 0; k < items.size(); ++k)
-            items[k].value = evaluator_.sum(first[k], first[k + 1]);
+            items[k].sum = evaluator_.sum(first[k], first[k + 1]);
     }
 
     /// Cuts every cell once. Parts that agree with their whole are added to the result; the others
@@ -183,15 +206,15 @@ private:
         }
         evaluate(parts);
 
-        std::vector<Rgb> sums(whole.size());
-        Rgb estimate = result_.radiance;
+        std::vector<SignedSum> sums(whole.size());
+        SignedSum estimate = total_;
         double open = 0;
         bool wide = false;
         std::vector<double> differences(whole.size());
         std::vector<char> forced(whole.size(), 0);
         for (std::size_t k = 0; k < whole.size(); ++k) {
             for (std::size_t i = first[k]; i < first[k + 1]; ++i) {
-                add(sums[k], parts[i].value);
+                add(sums[k], parts[i].sum);
                 const double width = parts[i].cell.width;
                 const bool onHorizon = width > horizon_ && std::abs(parts[i].local.z) < width;
                 if (onHorizon || tooWide(width, nodesAcross(cells_), parts[i].local, peaks_))
@@ -200,18 +223,18 @@ private:
             if (first[k + 1] == first[k] + 1 && parts[first[k]].cell.width == whole[k].cell.width)
                 forced[k] = 0;  // a cell that is not cut
             add(estimate, sums[k]);
-            differences[k] = distance(whole[k].value, sums[k]);
+            differences[k] = distance(whole[k].sum.value, sums[k].value);
             open += differences[k];
             wide = wide || forced[k] != 0;
         }
-        const double allowed = options_.tolerance * magnitude(estimate) / 2;
+        const double allowed = options_.tolerance * scaleOf(estimate) / 2;
         result_.cut = result_.evaluations > options_.maxEvaluations;
         const bool all = result_.cut || (!wide && open <= allowed);
         const double each = allowed / static_cast<double>(whole.size());
         std::vector<Item> next;
         for (std::size_t k = 0; k < whole.size(); ++k) {
             if (all || (!forced[k] && differences[k] <= each)) {
-                add(result_.radiance, sums[k]);
+                add(total_, sums[k]);
                 result_.error += differences[k];
             } else {
                 next.insert(next.end(), parts.begin() + static_cast<std::ptrdiff_t>(first[k]),
@@ -227,6 +250,7 @@ private:
     const double horizon_;
     const std::vector<Peak> peaks_;
     Evaluator evaluator_;
+    SignedSum& total_;
     PointRadiance& result_;
 };
 
@@ -301,8 +325,11 @@ double DirectIntegral::finest() const {
 PointRadiance DirectIntegral::at(const Brdf& brdf, const Frame& frame, const Direction& wo,
                                  const IntegrationOptions& options) const {
     PointRadiance result;
-    CellIntegral<LightCells, LightCell>(parts_->cells, brdf, frame, wo, options, result).run();
-    CellIntegral<PanelCells, PanelCell>(parts_->panels, brdf, frame, wo, options, result).run();
+    SignedSum total;
+    CellIntegral<LightCells, LightCell>(parts_->cells, brdf, frame, wo, options, total, result)
+        .run();
+    CellIntegral<PanelCells, PanelCell>(parts_->panels, brdf, frame, wo, options, total, result)
+        .run();
     Evaluator evaluator(brdf, wo, result);
     const std::vector<Peak> peaks =
         parts_->compact.empty() ? std::vector<Peak>{} : peaksOf(brdf, wo);
@@ -318,24 +345,24 @@ PointRadiance DirectIntegral::at(const Brdf& brdf, const Frame& frame, const Dir
             return evaluator.sum(0, evaluator.count());
         };
         int level = firstLevel(light, frame, peaks);
-        Rgb sum = sumAt(level);
+        SignedSum sum = sumAt(level);
         if (std::holds_alternative<DirectionalLight>(light)) {
-            add(result.radiance, sum);
+            add(total, sum);
             continue;
         }
         double difference = 0;
         while (true) {
-            const Rgb finer = sumAt(++level);
-            difference = distance(sum, finer);
+            const SignedSum finer = sumAt(++level);
+            difference = distance(sum.value, finer.value);
             sum = finer;
-            const double total = magnitude(result.radiance) + magnitude(sum);
-            if (difference <= options.tolerance * total / 2) break;
+            if (difference <= options.tolerance * (scaleOf(total) + scaleOf(sum)) / 2) break;
             result.cut = result.cut || result.evaluations > options.maxEvaluations;
             if (level >= mostLevel || result.cut) break;
         }
-        add(result.radiance, sum);
+        add(total, sum);
         result.error += difference;
     }
+    result.radiance = total.value;
     return result;
 }
 
