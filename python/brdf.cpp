@@ -197,7 +197,7 @@ py::array_t<double> directionArray(const py::object& theta, const py::object& ph
                               phis = numbersOf(both[1], "phi");
     std::vector<double> values;
     for (std::size_t k = 0; k < thetas.size(); ++k) {
-        const Direction d = directionFromAngles(radians(thetas[k]), radians(phis[k]));
+        const Direction d = jobs::Angles{thetas[k], phis[k]}.direction();
         values.insert(values.end(), {d.x, d.y, d.z});
     }
     const Doubles like(both[0]);
@@ -242,7 +242,7 @@ tolerance         relative, of quadrature)");
     module.def(
         "direction", directionArray, py::arg("theta"), py::arg("phi") = 0.0,
         R"(Unit vectors (..., 3) from angles in degrees: theta from the normal +z, phi from the
-tangent +x. The angles broadcast against each other.)");
+tangent +x. The angles broadcast against each other. The z of theta = 90 is exactly 0.)");
 }
 
 void bindClass(py::module_& module) {

@@ -27,6 +27,12 @@ std::vector<double> numbersIn(const std::string& text, std::size_t least, std::s
     return numbers;
 }
 
+Direction Angles::direction() const {
+    Direction d = directionFromAngles(radians(theta), radians(phi));
+    if (std::abs(std::remainder(theta, 180)) == 90) d.z = 0;
+    return d;
+}
+
 Angles anglesIn(const std::string& text, std::string_view member, double mostTheta) {
     const std::string form =
         fmt::format("THETA,PHI in degrees, theta from 0 to {} (for example 45,0)", mostTheta);

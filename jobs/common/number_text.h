@@ -18,7 +18,8 @@ std::vector<double> numbersIn(const std::string& text, std::size_t least, std::s
 struct Angles {
     double theta = 0, phi = 0;
 
-    Direction direction() const { return directionFromAngles(radians(theta), radians(phi)); }
+    /// With a z of exactly 0 at 90 degrees, where the cosine of pi / 2 as a double is 6e-17.
+    Direction direction() const;
 };
 
 /// "THETA,PHI", theta from 0 to `mostTheta`. Throws likewise.

@@ -157,6 +157,21 @@ TEST_F(Cli, PairsIgnoreOtherColumnsAndRepeatGrey) {
     EXPECT_NEAR(std::stod(row.substr(last + 1)), 0.8 / M_PI, 1e-15);
 }
 
+/// f is 0 where a cosine is 0 (brdf.h): at angles of 90 degrees as at vectors with a z of 0.
+TEST_F(Cli, TheHorizonHasOneValueInAnglesAndInVectors) {
+    write("in.csv", "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n0,1,0,0.5,0,0.8660254037844386\n");
+    for (const std::string spec : {"lambert", "ggx:alpha=.2"}) {
+        const Answer below = run("eval " + spec + " --wi 90,90 --wo 30,0");
+        ASSERT_EQ(below.code, 0) << below.err;
+        EXPECT_EQ(below.out, "grey\t0\n") << spec;
+        const Answer vectors = run("eval " + spec + " --pairs " + path("in.csv"));
+        ASSERT_EQ(vectors.code, 0) << vectors.err;
+        EXPECT_NE(vectors.out.find(",0,0,0\n"), std::string::npos) << vectors.out;
+        EXPECT_EQ(run("eval " + spec + " --wi 30,0 --wo 90,0").out, "grey\t0\n") << spec;
+    }
+    EXPECT_NE(run("eval lambert --wi 89.99,0 --wo 0,0").out.find("0.318"), std::string::npos);
+}
+
 TEST_F(Cli, SameBytesWhateverTheThreads) {
     const std::string job = "project ggx:alpha=.3 --cosine --order 5 --outgoing 12x12 ";
     ASSERT_EQ(run(job + "--threads 1 -o " + path("a.json")).code, 0);

@@ -98,6 +98,9 @@ class Evaluation(unittest.TestCase):
     def test_directions_from_angles(self):
         np.testing.assert_allclose(hshfit.direction(30, 90), [0, 0.5, np.sqrt(0.75)], atol=1e-15)
         self.assertEqual(hshfit.direction(np.zeros((2, 1)), np.zeros(5)).shape, (2, 5, 3))
+        horizon = hshfit.direction([90, -90, 270], [0, 40, 10])
+        np.testing.assert_array_equal(horizon[:, 2], 0)
+        np.testing.assert_array_equal(hshfit.open("lambert")(horizon, [0, 0, 1.0]), 0)
 
     def test_spheres_are_pictures(self):
         picture = hshfit.open("lambert:kd=0.5").sphere(32)
