@@ -175,7 +175,7 @@ Page files() {
     addRow(page, "NAME.hsh.json", "an export, which import, info, eval and compare read back");
     addRow(page, ".csv",
            "pairs of directions for eval, with the columns wi_x, wi_y, wi_z, wo_x, "
-           "wo_y, wo_z; samples");
+           "wo_y, wo_z, or theta_i, phi_i, theta_o, phi_o in degrees; samples");
     addHeading(page, "How they are written");
     addParagraph(page,
                  "A file appears under its name once it is complete. Files of one command "

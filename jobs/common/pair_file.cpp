@@ -1,10 +1,14 @@
 #include "pair_file.h"
 
+#include "number_text.h"
+
 #include <hshfit/error.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <libfccp/csv.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <string_view>
@@ -25,6 +29,42 @@ double numberIn(std::string_view cell, const std::string& where) {
     return value;
 }
 
+constexpr const char* vectorColumns[] = {"wi_x", "wi_y", "wi_z", "wo_x", "wo_y", "wo_z"};
+constexpr const char* angleColumns[] = {"theta_i", "phi_i", "theta_o", "phi_o"};
+
+template <std::size_t count, class Has>
+void requireColumns(const std::string& path, const char* const (&names)[count], const Has& has) {
+    for (const char* name : names) {
+        if (has(name)) continue;
+        throw InputError(fmt::format("{}: there is no column {} ({} are read, or {} in degrees)",
+                                     path, name, fmt::join(vectorColumns, ", "),
+                                     fmt::join(angleColumns, ", ")));
+    }
+}
+
+/// A direction from the texts of its angles.
+Direction directionOf(std::string_view theta, std::string_view phi, const std::string& where) {
+    const Angles angles{numberIn(theta, where), numberIn(phi, where)};
+    if (!(angles.theta >= 0 && angles.theta <= 180))
+        throw InputError(fmt::format("{}: the polar angle {} is not from 0 to 180 degrees", where,
+                                     angles.theta));
+    return angles.direction();
+}
+
+void takeAngles(const std::array<std::string, 4>& polar, const std::string& where, PairRow& row) {
+    row.wi = directionOf(polar[0], polar[1], where);
+    row.wo = directionOf(polar[2], polar[3], where);
+    const double v[] = {row.wi.x, row.wi.y, row.wi.z, row.wo.x, row.wo.y, row.wo.z};
+    for (std::size_t k = 0; k < row.cells.size(); ++k) row.cells[k] = fmt::format("{}", v[k]);
+}
+
+void takeVectors(const std::string& where, PairRow& row) {
+    std::array<double, 6> v{};
+    for (std::size_t k = 0; k < v.size(); ++k) v[k] = numberIn(row.cells[k], where);
+    row.wi = unitDirection({v[0], v[1], v[2]}, [&] { return where; });
+    row.wo = unitDirection({v[3], v[4], v[5]}, [&] { return where; });
+}
+
 }  // namespace
 
 Direction unitDirection(const Direction& d, const std::function<std::string()>& where) {
@@ -42,25 +82,28 @@ Direction unitDirection(const Direction& d, const std::function<std::string()>& 
 
 void readPairs(const std::string& path, const std::function<void(const PairRow&)>& take) {
     try {
-        io::CSVReader<7, trim_chars<' ', '\t'>, double_quote_escape<',', '"'>> reader(path);
+        io::CSVReader<11, trim_chars<' ', '\t'>, double_quote_escape<',', '"'>> reader(path);
         reader.read_header(io::ignore_extra_column | io::ignore_missing_column, "wi_x", "wi_y",
-                           "wi_z", "wo_x", "wo_y", "wo_z", "weight");
-        for (const char* name : {"wi_x", "wi_y", "wi_z", "wo_x", "wo_y", "wo_z"}) {
-            if (reader.has_column(name)) continue;
-            throw InputError(fmt::format(
-                "{}: there is no column {} (wi_x, wi_y, wi_z, wo_x, wo_y, wo_z are read)", path,
-                name));
-        }
+                           "wi_z", "wo_x", "wo_y", "wo_z", "theta_i", "phi_i", "theta_o", "phi_o",
+                           "weight");
+        const auto has = [&](const char* name) { return reader.has_column(name); };
+        const bool angles =
+            std::ranges::none_of(vectorColumns, has) && std::ranges::any_of(angleColumns, has);
+        if (angles)
+            requireColumns(path, angleColumns, has);
+        else
+            requireColumns(path, vectorColumns, has);
         PairRow row;
+        std::array<std::string, 4> polar;
         std::string weight;
         auto& [a, b, c, d, e, f] = row.cells;
-        while (reader.read_row(a, b, c, d, e, f, weight)) {
+        while (reader.read_row(a, b, c, d, e, f, polar[0], polar[1], polar[2], polar[3], weight)) {
             const std::string where = fmt::format("{}, line {}", path, reader.get_file_line());
-            std::array<double, 6> v{};
-            for (std::size_t k = 0; k < v.size(); ++k) v[k] = numberIn(row.cells[k], where);
-            row.wi = unitDirection({v[0], v[1], v[2]}, [&] { return where; });
-            row.wo = unitDirection({v[3], v[4], v[5]}, [&] { return where; });
-            if (reader.has_column("weight")) row.weight = numberIn(weight, where);
+            if (angles)
+                takeAngles(polar, where, row);
+            else
+                takeVectors(where, row);
+            if (has("weight")) row.weight = numberIn(weight, where);
             take(row);
         }
     } catch (const io::error::can_not_open_file&) {

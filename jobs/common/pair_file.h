@@ -12,7 +12,8 @@
 namespace hshfit::jobs {
 
 /// A row of a CSV of direction pairs: the columns wi_x, wi_y, wi_z, wo_x, wo_y, wo_z as text and
-/// as unit vectors, and the column `weight` if there is one.
+/// as unit vectors, and the column `weight` if there is one. A file without any of the six may have
+/// theta_i, phi_i, theta_o, phi_o in degrees; `cells` has the vectors then.
 struct PairRow {
     std::array<std::string, 6> cells;
     Direction wi, wo;
@@ -34,8 +35,8 @@ inline bool isUnit(double length) {
 Direction unitDirection(const Direction& d, const std::function<std::string()>& where);
 
 /// Calls `take` for each row of the file; other columns are ignored. Throws InputError for a file
-/// that cannot be read, a missing column, and cells that are no unit vectors within 0.001 or, for
-/// the weight, no number.
+/// that cannot be read, a missing column, and cells that are no unit vectors within 0.001, no
+/// polar angles from 0 to 180 or, for azimuths and the weight, no numbers.
 void readPairs(const std::string& path, const std::function<void(const PairRow&)>& take);
 
 /// The pairs of such a file as a sample, weighted by its column `weight` if there is one.

@@ -58,9 +58,10 @@ constexpr OptionRow evalRows[] = {
         .takes({.syntax = Syntax::numbers})
         .with("wi")
         .notWith("pairs"),
-    OptionRow{"pairs", options::at<&EvalOptions::pairs>,
-              "CSV of direction pairs: columns wi_x, wi_y, wi_z, wo_x, wo_y, wo_z; others are "
-              "ignored"}
+    OptionRow{
+        "pairs", options::at<&EvalOptions::pairs>,
+        "CSV of direction pairs: columns wi_x, wi_y, wi_z, wo_x, wo_y, wo_z, or theta_i, phi_i, "
+        "theta_o, phi_o in degrees; others are ignored"}
         .takes({.files = Files::read, .dash = ""}),
     rgbRow(options::at<&EvalOptions::rgb>),
     OptionRow{"cosine", options::at<&EvalOptions::cosine>, "Print f cos(theta_i) instead of f"},

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <sstream>
 
 namespace {
 
@@ -170,6 +171,28 @@ TEST_F(Cli, TheHorizonHasOneValueInAnglesAndInVectors) {
         EXPECT_EQ(run("eval " + spec + " --wi 30,0 --wo 90,0").out, "grey\t0\n") << spec;
     }
     EXPECT_NE(run("eval lambert --wi 89.99,0 --wo 0,0").out.find("0.318"), std::string::npos);
+}
+
+TEST_F(Cli, PairsMayBeInDegrees) {
+    write("angles.csv",
+          "theta_i,phi_i,theta_o,phi_o,expected_error\n30,0,60,180,0.1\n45,90,0,0,0.2\n");
+    const Answer answer = run("eval ward:ax=.2,ay=.5 --pairs " + path("angles.csv"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    std::istringstream rows(answer.out);
+    std::string row;
+    std::getline(rows, row);
+    EXPECT_EQ(row, "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,r,g,b");
+    for (const char* pair : {"--wi 30,0 --wo 60,180", "--wi 45,90 --wo 0,0"}) {
+        std::getline(rows, row);
+        const std::string one = run(std::string("eval ward:ax=.2,ay=.5 ") + pair).out;
+        const double expected = std::stod(one.substr(one.find('\t')));
+        EXPECT_GT(expected, 0);
+        EXPECT_NEAR(std::stod(row.substr(row.rfind(',') + 1)), expected, 1e-12 * expected) << row;
+    }
+    write("angles.csv", "theta_i,phi_i,theta_o\n30,0,60\n");
+    expectError("eval lambert --pairs " + path("angles.csv"), 3, "phi_o", 1);
+    write("angles.csv", "theta_i,phi_i,theta_o,phi_o\n30,0,190,0\n");
+    expectError("eval lambert --pairs " + path("angles.csv"), 3, "0 to 180", 1);
 }
 
 TEST_F(Cli, SameBytesWhateverTheThreads) {
