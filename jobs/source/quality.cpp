@@ -172,7 +172,9 @@ std::optional<Poor> withLeast(std::optional<double> TriedFit::*error, std::strin
     constexpr double leastGain = 0.9;
     const auto errorOf = [&](const TriedFit& fit) { return (fit.*error).value_or(own); };
     const auto best = std::ranges::min_element(fits, {}, errorOf);
-    if (best == fits.end() || errorOf(*best) > leastGain * own) return std::nullopt;
+    // An error without bound is no gain over another.
+    if (best == fits.end() || !std::isfinite(errorOf(*best)) || errorOf(*best) > leastGain * own)
+        return std::nullopt;
     const bool same = best->loss.empty();
     return Poor{
         fmt::format("{}; {} by the loss {} has {} {:.3g} in place of {:.3g}", reason, best->model,
@@ -342,10 +344,12 @@ std::optional<Poor> judge(const gpu::ErrorSplit& split, const std::optional<Pict
 std::string adviceBeyondModels(const Brdf& data) {
     const std::size_t functions = halfwayFunctions(data.laws());
     if (determine(data, functions)) return {};
+    const std::size_t pairs = *measuredPairs(data);
     return fmt::format(
-        "more measurements, as {} pairs of directions do not determine the {} functions of the "
-        "halfway form",
-        *measuredPairs(data), functions);
+        "more measurements, as {} of directions {} not determine the {} functions of the halfway "
+        "form",
+        pairs == 1 ? "1 pair" : fmt::format("{} pairs", pairs), pairs == 1 ? "does" : "do",
+        functions);
 }
 
 std::optional<Poor> judgeFit(const std::optional<PictureError>& picture, const FitCall& call,

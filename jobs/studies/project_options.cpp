@@ -8,10 +8,15 @@ namespace {
 
 using options::at;
 
+/// The most of any basis (bases::Entry::maxOrder), which its maker holds to.
+constexpr Bounds<int> orders{1, 2801};
+
 constexpr OptionRow projectRows[] = {
     OptionRow{"basis", at<&ProjectOptions::basis>, "See hshfit list bases"}.takes(
         {.words = basisWords}),
-    OptionRow{"order", at<&ProjectOptions::order>, "Number of bands: l = 0 .. order-1"},
+    OptionRow{"order", at<&ProjectOptions::order>,
+              "Number of bands: l = 0 .. order-1; some bases have fewer"}
+        .within(orders),
     OptionRow{"outgoing", at<&ProjectOptions::outgoing>,
               "WxH (parabolic map), N (elevations, isotropic) or THETA,PHI in degrees"}
         .takes({.syntax = Syntax::outgoing})

@@ -58,8 +58,10 @@ TEST_F(Cli, UsageErrorsNameWhatIsValid) {
     expectError("project lambert --frobnicate", 2,
                 "project: unknown option '--frobnicate'; see hshfit help project", 0);
     expectError("project lambert --tolerance high -o " + path("x.json"), 2, "high", 0);
-    expectError("project lambert --order 2.5 -o " + path("x.json"), 2,
+    expectError("export lambert --basis hsh --order 2.5 -o " + path("x"), 2,
                 "--order '2.5': give a whole number; see", 0);
+    expectError("project lambert --order 2.5 -o " + path("x.json"), 2, "'2.5' is not within 1 to",
+                0);
     expectError("project lambert -o", 2, "--output: a value is missing; see", 0);
     expectError("info lambert -q", 2, "unexpected '-q'; see hshfit help info", 0);
     expectError("-x", 2, "no command is given", 0);
@@ -193,6 +195,12 @@ TEST_F(Cli, PairsMayBeInDegrees) {
     expectError("eval lambert --pairs " + path("angles.csv"), 3, "phi_o", 1);
     write("angles.csv", "theta_i,phi_i,theta_o,phi_o\n30,0,190,0\n");
     expectError("eval lambert --pairs " + path("angles.csv"), 3, "0 to 180", 1);
+}
+
+TEST_F(Cli, AnImpossibleOrderIsRefusedBeforeAnOldFile) {
+    write("old.json", "{}");
+    expectError("project lambert -o " + path("old.json") + " --order 0", 2, "order", 1);
+    EXPECT_NE(run("project --help").out.find("1 to 2801"), std::string::npos);
 }
 
 TEST_F(Cli, SameBytesWhateverTheThreads) {

@@ -66,6 +66,11 @@ TEST_F(Quality, AdviceForFewMeasurementsIsWhatTheyDetermine) {
     const std::string fitted =
         adviceOf(answerOf("fit " + path("five.csv") + " --model lambert", true));
     EXPECT_TRUE(fitted.starts_with("more measurements, as 5 pairs of directions")) << fitted;
+    write("one.csv", "theta_i,phi_i,theta_o,phi_o,brdf\n0,0,45,0,5\n");
+    const std::string single =
+        adviceOf(answerOf("fit " + path("one.csv") + " --model lambert", true));
+    EXPECT_TRUE(single.starts_with("more measurements, as 1 pair of directions does not"))
+        << single;
     const std::string call = adviceOf(answerOf(
         "project " + path("five.csv") + " --cosine --order 4 -o " + path("five.json"), true));
     const std::string to = " -o fit.json";

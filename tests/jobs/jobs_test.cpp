@@ -17,6 +17,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <limits>
 #include <set>
 #include <thread>
 
@@ -73,6 +74,11 @@ TEST(JudgeFit, NamesWhatIsBetterByTheMeasureThatIsPoor) {
     // Samples of many decades.
     call.factor = 30;
     EXPECT_TRUE(has(betterOf(0.05), "a factor of 1.5 in place of 30")) << betterOf(0.05);
+    // A model that is 0 at half of the samples, too, is no better.
+    call.factor = std::numeric_limits<double>::infinity();
+    fits[1].factor = call.factor;
+    call.otherwise = "more measurements";
+    EXPECT_TRUE(has(betterOf(0.05), "|more measurements")) << betterOf(0.05);
 }
 
 TEST_F(Jobs, ProjectWritesTheFileOfTheProgram) {
