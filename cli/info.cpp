@@ -10,6 +10,7 @@
 #include <hshfit/files/json_fields.h>
 
 #include <jobs/common/many.h>
+#include <jobs/source/map_facts.h>
 #include <jobs/studies/info.h>
 
 #include <fmt/format.h>
@@ -89,6 +90,29 @@ Json answer(const jobs::BrdfInfo& info) {
     return document;
 }
 
+Json mapJson(const jobs::MapFacts& map) {
+    Json levels = Json::array();
+    for (const auto& level : map.levels)
+        levels.push_back({{"width", level.width}, {"height", level.height}});
+    return {{"form", map.form},
+            {"levels", levels},
+            {"bytes", map.bytes},
+            {"texel", {{"x", map.x}, {"y", map.y}, {"level", map.level}}}};
+}
+
+std::string mapText(const Json& map) {
+    const Json& first = map["levels"].at(0);
+    return factLine("map",
+                    fmt::format("{} x {} texels, {} levels, form {}, {} bytes",
+                                first["width"].get<std::size_t>(),
+                                first["height"].get<std::size_t>(), map["levels"].size(),
+                                map["form"].get<std::string>(), map["bytes"].get<std::size_t>())) +
+           factLine("texel", fmt::format("{},{} of level {}; :x=…,y=… names others",
+                                         map["texel"]["x"].get<std::size_t>(),
+                                         map["texel"]["y"].get<std::size_t>(),
+                                         map["texel"]["level"].get<std::size_t>()));
+}
+
 std::string scalarText(const Json& value) {
     return value.is_string() ? value.get<std::string>() : jsonText(value);
 }
@@ -101,6 +125,7 @@ std::string shortText(const Json& value) {
 std::string infoText(const Json& document) {
     std::string out = fmt::format("{}: {}\n", document["kind"].get<std::string>(),
                                   document["name"].get<std::string>());
+    if (document.contains("map")) out += mapText(document["map"]);
     if (document.contains("side"))
         out += factLine("light", fmt::format("{}: wo is below the surface",
                                              document["side"].get<std::string>()));
@@ -137,7 +162,9 @@ struct Described {
 Described describe(const std::string& spec, const jobs::InfoOptions& options,
                    const jobs::Listener& listener) {
     if (looksLikeLight(spec)) return {lightAnswer(spec, jobs::describeLight(spec)), true};
-    return {answer(jobs::describeSource(spec, options, listener))};
+    Described described{answer(jobs::describeSource(spec, options, listener))};
+    if (const auto map = jobs::mapOf(spec)) described.document["map"] = mapJson(*map);
+    return described;
 }
 
 /// One after the other, with an empty line in between.

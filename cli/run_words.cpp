@@ -3,6 +3,7 @@
 #include "command.h"
 #include "command_table.h"
 #include "help_pages.h"
+#include "option_rows.h"
 #include "option_values.h"
 #include "outputs.h"
 #include "standard_files.h"
@@ -13,6 +14,7 @@
 #include <hshfit/files/interruption.h>
 #include <hshfit/files/output_rule.h>
 #include <hshfit/version.h>
+#include <jobs/source/map_facts.h>
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -33,6 +35,25 @@ namespace {
 
 /// Ends the parsing of a command whose files stand and are valid.
 struct NothingToDo {};
+
+/// Says of each BRDF that is a map of materials, and of no texel in words, that it is one texel.
+/// `info` describes the map, and `export` takes all of it.
+void noteTexels(const CLI::App& command, const Globals& globals) {
+    if (command.get_name() == "info" || command.get_name() == "export") return;
+    for (const CLI::Option* option : command.get_options()) {
+        const Values* row = option->count() > 0 ? findValues(command, *option) : nullptr;
+        if (!row || row->syntax != Syntax::brdf || row->files != Files::read) continue;
+        for (const std::string& spec : option->results()) {
+            std::string remark;
+            try {
+                remark = jobs::texelRemark(spec);
+            } catch (const Error&) {
+                continue;  // of an input, which the command itself reports
+            }
+            if (!remark.empty()) note(globals, fmt::format("{}: {}", spec, remark));
+        }
+    }
+}
 
 /// Usage errors of ours and of CLI11 alike end in exit code 2 with one line.
 int run(const std::vector<std::string>& words, Outputs outputs) {
@@ -66,6 +87,7 @@ int run(const std::vector<std::string>& words, Outputs outputs) {
         if (outputs == Outputs::kept)
             for (const CLI::App* command : app.get_subcommands())
                 if (areOutputsKept(*command, globals)) throw NothingToDo();
+        for (const CLI::App* command : app.get_subcommands()) noteTexels(*command, globals);
     });
     for (const Command& row : commands()) addCommand(app, globals, row);
 

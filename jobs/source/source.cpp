@@ -18,6 +18,7 @@
 #include <hshfit/wings.h>
 
 #include "filtered_texel_brdf.h"
+#include "map_facts.h"
 
 #include <brdfs/catalog.h>
 #include <brdfs/measured/measured_brdf.h>
@@ -26,6 +27,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
+#include <initializer_list>
+#include <system_error>
 #include <utility>
 
 namespace hshfit::jobs {
@@ -36,7 +40,13 @@ std::unique_ptr<Brdf> seenAsRgb(std::unique_ptr<Brdf> brdf, bool rgb) {
     return asRgb(std::move(brdf));
 }
 
-std::unique_ptr<Brdf> openTexelOf(const std::string& path, bool filtered, const std::string& rest) {
+/// Parameters that name a texel behind the path of a map.
+struct TexelWords {
+    std::size_t x = 0, y = 0, level = 0;
+    bool given = false;  ///< x or y
+};
+
+TexelWords texelIn(const std::string& path, const std::string& rest) {
     constexpr double most = 1 << 20;
     const Parameter parameters[] = {
         {.name = "x", .help = "column", .fallback = 0, .max = most},
@@ -51,34 +61,80 @@ std::unique_ptr<Brdf> openTexelOf(const std::string& path, bool filtered, const 
                 fmt::format("{}: {} is {}; it has to be a whole number", path, name, value));
         return static_cast<std::size_t>(value);
     };
-    if (filtered) return openFilteredTexel(path, index("level"), index("x"), index("y"));
+    return {index("x"), index("y"), index("level"),
+            rest.find("x=") != std::string::npos || rest.find("y=") != std::string::npos};
+}
+
+std::unique_ptr<Brdf> openTexelOf(const std::string& path, bool filtered, const std::string& rest) {
+    const auto [x, y, level, given] = texelIn(path, rest);
+    if (filtered) return openFilteredTexel(path, level, x, y);
     if (isLibrarySidecar(path)) {
         const LibraryMap map(path);
-        auto texelBrdf = map.texel(index("level"), index("x"), index("y"));
+        auto texelBrdf = map.texel(level, x, y);
         map.checkIntact();
         return texelBrdf;
     }
     const MaterialMap map(path);
     if (map.sidecar().form == "halfway") {
-        const std::size_t material = map.material(index("level"), index("x"), index("y"));
+        const std::size_t material = map.material(level, x, y);
         map.checkIntact();
         const std::string& file = map.sidecar().files[material];
         if (file.empty())
             throw InputError(fmt::format("{}: material {} has no file", path, material));
         return reconstruct(readRepresentation(file), {});
     }
-    Coefficients coefficients = map.coefficients(index("level"), index("x"), index("y"));
+    Coefficients coefficients = map.coefficients(level, x, y);
     map.checkIntact();
     return std::make_unique<Reconstruction>(std::move(coefficients));
+}
+
+/// Whether a file is the sidecar of a map or of an export of one.
+bool isMap(const std::string& path) {
+    return !path.empty() &&
+           (isFilteredSidecar(path) || isMapSidecar(path) || isLibrarySidecar(path));
 }
 
 /// A texel of a material map, "FILE:x=3,y=5,level=0"; null where SPEC is none.
 std::unique_ptr<Brdf> openTexel(const std::string& spec) {
     const std::string path(pathIn(spec));
-    const bool filtered = !path.empty() && isFilteredSidecar(path);
-    if (path.empty() || !(filtered || isMapSidecar(path) || isLibrarySidecar(path))) return nullptr;
-    if constexpr (isBuilt(Wing::maps)) return openTexelOf(path, filtered, spec.substr(path.size()));
+    if (!isMap(path)) return nullptr;
+    if constexpr (isBuilt(Wing::maps))
+        return openTexelOf(path, isFilteredSidecar(path), spec.substr(path.size()));
     throw UsageError(notBuilt(path, Wing::maps));
+}
+
+/// The bytes of files that a sidecar names beside itself.
+std::size_t bytesBeside(const std::string& sidecar, std::initializer_list<std::string> names) {
+    std::size_t bytes = 0;
+    for (const std::string& name : names) {
+        std::error_code missing;
+        const auto path = std::filesystem::path(sidecar).parent_path() / name;
+        const std::uintmax_t size = name.empty() ? 0 : std::filesystem::file_size(path, missing);
+        if (!missing) bytes += size;
+    }
+    return bytes;
+}
+
+MapFacts factsOfMap(const std::string& path) {
+    MapFacts facts;
+    const auto take = [&](std::string form, const auto& levels) {
+        facts.form = std::move(form);
+        for (const auto& level : levels) facts.levels.push_back({level.width, level.height});
+    };
+    if (isFilteredSidecar(path)) {
+        const FilteredSidecar map = readFilteredSidecar(path);
+        take(map.form, map.levels);
+        facts.bytes = bytesBeside(path, {map.texture, map.harmonics});
+    } else if (isLibrarySidecar(path)) {
+        const LibrarySidecar map = readLibrarySidecar(path);
+        take("library", map.levels);
+        facts.bytes = bytesBeside(path, {map.texture, map.library});
+    } else {
+        const MapSidecar map = readMapSidecar(path);
+        take(map.form, map.levels);
+        facts.bytes = bytesBeside(path, {map.texture});
+    }
+    return facts;
 }
 
 std::unique_ptr<Brdf> checked(std::unique_ptr<Brdf> brdf, Sides sides) {
@@ -107,6 +163,25 @@ std::unique_ptr<Brdf> openAnySource(const std::string& spec, bool rgb) {
 }
 
 }  // namespace
+
+std::optional<MapFacts> mapOf(const std::string& spec) {
+    const std::string path(pathIn(spec));
+    if (!isMap(path)) return std::nullopt;
+    if constexpr (isBuilt(Wing::maps)) {
+        MapFacts facts = factsOfMap(path);
+        const TexelWords texel = texelIn(path, spec.substr(path.size()));
+        facts.x = texel.x, facts.y = texel.y, facts.level = texel.level;
+        facts.texelIsGiven = texel.given;
+        return facts;
+    }
+    throw UsageError(notBuilt(path, Wing::maps));
+}
+
+std::string texelRemark(const std::string& spec) {
+    const std::optional<MapFacts> map = mapOf(spec);
+    if (!map || map->texelIsGiven) return {};
+    return fmt::format("texel 0,0 of level {}; :x=…,y=… names others", map->level);
+}
 
 std::unique_ptr<Brdf> openBrdf(const std::string& spec, bool rgb, Sides sides) {
     if (auto texel = openTexel(spec)) return texel;

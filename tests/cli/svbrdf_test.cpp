@@ -131,6 +131,34 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& row) { return row.param.name; });
 
 /// Values of two materials, a checkerboard, and their mean in level 1.
+TEST_F(Svbrdf, MapsAreDescribedAndNameTheirTexel) {
+    writeMap("kd.pfm", 8, 4, [](int x, int) { return 0.1F + 0.1F * static_cast<float>(x); });
+    describe("lambert", {{"kd", {{"map", "kd.pfm"}}}});
+    ASSERT_EQ(made("-o " + path("out")).code, 0);
+    const std::string map = path("out/material.json");
+    ASSERT_EQ(run("export " + map + " -o " + path("gpu")).code, 0);
+    for (const std::string& file : {map, path("gpu/material.hsh.json")}) {
+        const Answer info = run("info --json " + file);
+        ASSERT_EQ(info.code, 0) << info.err;
+        EXPECT_TRUE(keepsSchema(info.out, "info"));
+        const Json facts = Json::parse(info.out)["map"];
+        EXPECT_EQ(facts["form"], "outgoing");
+        ASSERT_EQ(facts["levels"].size(), 4U);  // 8, 4, 2, 1
+        EXPECT_EQ(facts["levels"][0], Json({{"width", 8}, {"height", 4}}));
+        EXPECT_EQ(facts["levels"][3], Json({{"width", 1}, {"height", 1}}));
+        const char* texels = file == map ? "out/material.ktx2" : "gpu/material.map.ktx2";
+        EXPECT_EQ(facts["bytes"], std::filesystem::file_size(path(texels)));
+        EXPECT_NE(run("info " + file).out.find("8 x 4 texels, 4 levels"), std::string::npos);
+        const std::string remark = "texel 0,0 of level 0; :x=…,y=… names others";
+        const std::string pair = " --wi 30,0 --wo 0,0";
+        EXPECT_NE(run("eval " + file + pair).err.find(remark), std::string::npos);
+        EXPECT_EQ(run("eval " + file + ":x=0,y=0" + pair).err, "");
+        EXPECT_NE(run("compare lambert " + file).err.find(remark), std::string::npos);
+        EXPECT_NE(run("eval " + file + ":level=1" + pair).err.find("texel 0,0 of level 1"),
+                  std::string::npos);
+    }
+}
+
 TEST_F(Svbrdf, LevelsAreMeansOfReflectance) {
     writeMap("alpha.pfm", 4, 2, [](int x, int y) { return (x + y) % 2 == 0 ? 0.1F : 0.7F; });
     describe("ggx", {{"alpha", {{"map", "alpha.pfm"}}}, {"ks", {0.9, 0.5, 0.1}}});
