@@ -8,6 +8,7 @@
 #include <hshfit/percent.h>
 #include <hshfit/pictures/poor.h>
 
+#include <jobs/common/clock.h>
 #include <jobs/maps/map_answers.h>
 #include <jobs/maps/map_options.h>
 #include <jobs/maps/map_processes.h>
@@ -18,6 +19,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstdlib>
 #include <variant>
 
@@ -109,7 +111,17 @@ std::string textOf(const jobs::MapLibrary& library) {
     return text + "\n";
 }
 
-std::string textOf(const jobs::Svbrdf& done) {
+/// The time of the whole job, and its parts.
+std::string timesText(const jobs::Svbrdf& done, double total) {
+    return fmt::format(
+        "{:.1f} s in all: {:.1f} s for {}, {:.1f} s for writing, {:.1f} s for checks "
+        "of what was written\n",
+        total, done.tableSeconds,
+        done.library ? "maps and the library" : "maps, the table of lobes and measuring of forms",
+        done.seconds, std::max(0.0, total - done.tableSeconds - done.seconds));
+}
+
+std::string textOf(const jobs::Svbrdf& done, double total) {
     std::string text = fmt::format("{}: {} x {} texels of {}", done.description, done.width,
                                    done.height, done.model);
     if (!done.outgoing.empty()) text += fmt::format(", {} outgoing directions", done.outgoing);
@@ -137,10 +149,11 @@ std::string textOf(const jobs::Svbrdf& done) {
     if (done.choices.size() > 1 || done.choices.front().pairs) text += choicesText(done.choices);
     if (done.library) text += textOf(*done.library);
     text += fmt::format(
-        "{}{}, {:.4g} MB, {:.1f} s ({:.3g} texels a second{})\n", done.form,
+        "{}{}, {:.4g} MB, written in {:.1f} s ({:.3g} texels a second{})\n", done.form,
         done.count > 0 ? fmt::format(" {}", done.count) : "", megabytes(done.bytes), done.seconds,
         done.rate,
         done.kernelRate > 0 ? fmt::format("; the bare kernel {:.3g}", done.kernelRate) : "");
+    text += timesText(done, total);
     for (std::size_t level = 0; level < done.levels.size(); ++level) text += levelText(done, level);
     std::size_t materials = 0;
     for (const std::string& file : done.files) {
@@ -167,15 +180,16 @@ void refuseLaunchers() {
     }
 }
 
-void print(const jobs::Svbrdf& done, const Globals& globals) {
-    if (!globals.json) return printText(textOf(done));
+void print(const jobs::Svbrdf& done, double total, const Globals& globals) {
+    if (!globals.json) return printText(textOf(done, total));
     nlohmann::ordered_json json = jobs::svbrdfJson(done);
+    json["seconds"]["total"] = total;
     if (const std::string better = betterCall(done); !better.empty())
         json["captured"]["better"] = better;
     printJson(json);
 }
 
-void print(const jobs::FilteredMapAnswer& done, const Globals& globals) {
+void print(const jobs::FilteredMapAnswer& done, double, const Globals& globals) {
     if (globals.json) return printJson(jobs::filteredMapJson(done));
     printText(cli::textOf(done));
 }
@@ -190,9 +204,11 @@ void runSvbrdf(SvbrdfArguments& arguments, const CLI::App& command, const Global
             misplacedOption(command, jobs::mapOptions().rows, jobs::mapFormBit(options.form)))
         throw UsageError(fmt::format("{} is for --form {}, not for {}", given->name,
                                      jobs::mapFormNames(given->row->inputs), options.form));
+    const auto start = jobs::Clock::now();
     const auto done =
         jobs::makeMap(arguments.description, arguments.output, options, listenerFor(globals));
-    std::visit([&](const auto& made) { print(made, globals); }, done);
+    const double total = jobs::secondsSince(start);
+    std::visit([&](const auto& made) { print(made, total, globals); }, done);
 }
 
 constexpr ArgumentRow svbrdfArguments[] = {

@@ -159,6 +159,20 @@ TEST_F(Svbrdf, MapsAreDescribedAndNameTheirTexel) {
     }
 }
 
+TEST_F(Svbrdf, TheWholeTimeAndItsPartsAreStated) {
+    writeMap("kd.pfm", 8, 4, [](int x, int) { return 0.1F + 0.1F * static_cast<float>(x); });
+    describe("lambert", {{"kd", {{"map", "kd.pfm"}}}});
+    const Answer text = run("svbrdf " + path("d.json") + " -o " + path("out"));
+    ASSERT_EQ(text.code, 0) << text.err;
+    EXPECT_NE(text.out.find(" s in all: "), std::string::npos) << text.out;
+    EXPECT_NE(text.out.find("measuring of forms"), std::string::npos) << text.out;
+    const Answer timed = made("--force -o " + path("again"));
+    const Json seconds = Json::parse(timed.out)["seconds"];
+    EXPECT_GE(seconds["total"].get<double>(),
+              seconds["preparation"].get<double>() + seconds["writing"].get<double>());
+    EXPECT_TRUE(keepsSchema(timed.out, "svbrdf"));
+}
+
 TEST_F(Svbrdf, LevelsAreMeansOfReflectance) {
     writeMap("alpha.pfm", 4, 2, [](int x, int y) { return (x + y) % 2 == 0 ? 0.1F : 0.7F; });
     describe("ggx", {{"alpha", {{"map", "alpha.pfm"}}}, {"ks", {0.9, 0.5, 0.1}}});
