@@ -392,7 +392,7 @@ TEST_F(LibraryCommand, SearchFindsTheMaterialItself) {
     const std::string brushed = " ggx:ax=.1,ay=.4,F0=.9", b = path("b.library");
     answer("learn" + words(0, 4) + brushed + " --components 2" + free + " -o " + b);
     EXPECT_LT(answer("search " + b + brushed)["found"][0]["distance"], 0.5);  // of projections
-    for (const Json& row : answer("list " + b)["materials"])
+    for (const Json all = answer("list " + b); const Json& row : all["materials"])
         EXPECT_TRUE(row["error"]["flip"].is_null()) << row;  // no picture was drawn
 }
 

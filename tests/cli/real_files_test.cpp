@@ -74,7 +74,8 @@ TEST_P(RealFiles, hasAReport) {
     const Answer answer = run("report --json --cosine --outgoing 30,0 --max-order 4 " + source_);
     ASSERT_EQ(answer.code, 0) << answer.err;
     EXPECT_TRUE(keepsSchema(answer.out, "report"));
-    for (const Json& curve : Json::parse(answer.out)["reports"][0]["curves"]) {
+    for (const Json all = Json::parse(answer.out);
+         const Json& curve : all["reports"][0]["curves"]) {
         double before = 0;
         for (const Json& point : curve["points"]) {
             EXPECT_GE(point["accuracy"], before - 1e-9) << curve["basis"];
@@ -92,7 +93,7 @@ TEST_P(RealFiles, survivesTheRoundTrip) {
                               std::string(file.options) + " " + source_ + " " + out);
     ASSERT_EQ(answer.code, 0) << answer.err;
     EXPECT_TRUE(keepsSchema(answer.out, "convert"));
-    for (const Json& metric : Json::parse(answer.out)["loss"]["metrics"]) {
+    for (const Json all = Json::parse(answer.out); const Json& metric : all["loss"]["metrics"]) {
         if (metric["name"] != "relative-l2-cosine") continue;
         ASSERT_TRUE(metric["value"].is_number()) << metric;
         EXPECT_LE(metric["value"], file.loss);
