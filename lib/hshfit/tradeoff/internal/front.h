@@ -14,8 +14,8 @@ std::vector<std::size_t> paretoFront(std::span<const double> costs, std::span<co
 
 /// Where the front bends most: the point farthest below the straight line between its ends, both
 /// axes logarithmic and scaled to the front's extent (Satopaa et al. 2011, "Finding a 'kneedle' in
-/// a haystack", without smoothing). Where no point is below the line, the last one: every cost up to
-/// there lowers the error by more than the ones before. None of an empty front.
+/// a haystack", without smoothing). Where no point is below the line, the last one: each cost up to
+/// there lowers the error by more than the one before. None of an empty front.
 /// Costs are above 0; an error of 0 counts as a thousandth of the least above it.
 std::optional<std::size_t> kneeOf(std::span<const std::size_t> front, std::span<const double> costs,
                                   std::span<const double> errors);
