@@ -140,7 +140,7 @@ TEST_F(FitReports, LobesOfOneModelAreNumbered) {
     ASSERT_EQ(got.code, 0) << got.err;
     for (const std::string name :
          {"ggx1.F0", "ggx1.alpha", "ggx1.ks", "ggx2.F0", "ggx2.alpha", "ggx2.ks"}) {
-        EXPECT_TRUE(has(read(path("report/comparison.html")), "<td>" + name + "</td>")) << name;
+        EXPECT_TRUE(has(read(path("report/comparison.html")), ">" + name + "</th>")) << name;
         EXPECT_TRUE(has(read(path("report/parameters.tex")), name + " &")) << name;
     }
 }
