@@ -2,8 +2,8 @@
 
 #include <hshfit/brdf/vectors.h>
 #include <hshfit/material_library/log_terms.h>
+#include <hshfit/pictures/flip.h>
 #include <hshfit/pictures/lab.h>
-#include <hshfit/pictures/rgb_picture.h>
 
 #include <algorithm>
 #include <array>
@@ -39,26 +39,6 @@ void appendPairs(double lampAngle, std::vector<DirectionPair>& pairs) {
 }
 
 using Jacobian = Eigen::Matrix3d;
-
-/// Exposures of a picture, the longest first, as sphereFlip() takes them; `largest`: the largest
-/// channel of each pixel.
-std::vector<double> exposuresOf(const std::vector<double>& largest) {
-    constexpr int most = 4;
-    constexpr double unlit = 1.0 / 512;
-    const double brightest = *std::ranges::max_element(largest);
-    if (brightest <= 0) return {1};
-    std::vector<double> shown;
-    for (const double value : largest)
-        if (value > unlit * brightest) shown.push_back(value);
-    const auto middle = shown.begin() + static_cast<std::ptrdiff_t>(shown.size() / 2);
-    std::ranges::nth_element(shown, middle);
-    const double stops = std::log2(brightest / *middle);
-    const int count = std::clamp(1 + static_cast<int>(std::ceil(stops / 2)), 2, most);
-    std::vector<double> exposures;
-    for (int k = 0; k < count; ++k)
-        exposures.push_back(shownAsWhite / *middle * std::exp2(-stops * k / (count - 1)));
-    return exposures;
-}
 
 /// Columns are derivatives of Hunt-adjusted L*a*b* by the logarithm of R, G and B.
 Jacobian huntByLog(const LinearRgb& rgb) {
@@ -143,12 +123,12 @@ Eigen::MatrixXd SeenPairs::colours(const Eigen::MatrixXd& logs) const {
         std::vector<double> largest;
         for (std::size_t k = first[lamp]; k < first[lamp + 1]; ++k)
             largest.push_back(seen.row(static_cast<Index>(k)).maxCoeff());
-        const std::vector<double> exposures = exposuresOf(largest);
+        const std::vector<double> exposures = flipExposures(largest);  // the longest first
         for (std::size_t k = first[lamp]; k < first[lamp + 1]; ++k) {
             const double value = largest[k - first[lamp]];
             const auto shown = std::ranges::find_if(
-                exposures, [&](double exposure) { return exposure * value < 1; });
-            const double exposure = shown == exposures.end() ? exposures.back() : *shown;
+                exposures, [&](double stops) { return std::exp2(stops) * value < 1; });
+            const double exposure = std::exp2(shown == exposures.end() ? exposures.back() : *shown);
             LinearRgb rgb;
             for (Index c = 0; c < 3; ++c)
                 rgb[static_cast<std::size_t>(c)] =

@@ -200,4 +200,20 @@ std::vector<float> flip(const RgbPicture& reference, const RgbPicture& test,
     return result;
 }
 
+std::vector<double> flipExposures(std::vector<double> largest) {
+    constexpr int most = 4;
+    const double brightest =
+        largest.empty() ? 0 : *std::max_element(largest.begin(), largest.end());
+    std::erase_if(largest, [&](double value) { return !(value > unlitShare * brightest); });
+    if (largest.empty()) return {0};
+    const auto middle = largest.begin() + static_cast<std::ptrdiff_t>(largest.size() / 2);
+    std::nth_element(largest.begin(), middle, largest.end());
+    const double first = std::log2(shownAsWhite / *middle),
+                 last = std::log2(shownAsWhite / brightest);
+    const int count = std::clamp(1 + static_cast<int>(std::ceil((first - last) / 2)), 2, most);
+    std::vector<double> stops;
+    for (int k = 0; k < count; ++k) stops.push_back(first + (last - first) * k / (count - 1));
+    return stops;
+}
+
 }  // namespace hshfit::inline pictures

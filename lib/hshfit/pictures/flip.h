@@ -22,4 +22,14 @@ struct FlipOptions {
 std::vector<float> flip(const RgbPicture& reference, const RgbPicture& test,
                         const FlipOptions& options = {});
 
+/// The exposures, in stops, at which HDR-FLIP (Andersson, Nilsson, Shirley & Akenine-Möller 2021,
+/// 10.1111/cgf.14251) looks at a sphere here, by the largest channel of each of its pixels: evenly
+/// spaced, at most four. The first shows the surface: half of the lit pixels, those above
+/// `unlitShare` of the brightest, have their largest channel at or above `shownAsWhite`. At the
+/// last the brightest pixel just reaches `shownAsWhite`. 0 alone for a black sphere.
+std::vector<double> flipExposures(std::vector<double> largest);
+
+/// The share of the brightest pixel below which pixels have no light.
+inline constexpr double unlitShare = 1.0 / 512;
+
 }  // namespace hshfit::inline pictures

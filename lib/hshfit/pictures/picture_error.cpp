@@ -25,7 +25,6 @@ namespace {
 
 constexpr int pixels = 48;               // along an edge of a picture
 constexpr double sphereDegrees = 4;      // the width of the sphere that an observer sees
-constexpr double unlit = 1.0 / 512;      // of the brightest pixel: darker ones have no light
 constexpr double perLargest = 1.0 / 20;  // of the largest channel: less is not seen beside it
 constexpr double darkest = 1e-3;         // 1/sr, and of albedos: black
 
@@ -79,25 +78,11 @@ double brightnessOf(const SpherePicture& sphere, std::size_t k) {
     return static_cast<double>(*std::max_element(rgb, rgb + 3));
 }
 
-/// Exposures for FLIP in stops, evenly spaced, at most four. The first shows the surface: half of
-/// the lit pixels have their largest channel at or above `shownAsWhite`. At the last the brightest
-/// pixel just reaches `shownAsWhite`.
-std::vector<double> exposuresOf(const SpherePicture& sphere, double brightest) {
-    constexpr int most = 4;
-    std::vector<double> lit;
-    for (std::size_t k = 0; k < sphere.coverage.size(); ++k) {
-        const double value = brightnessOf(sphere, k);
-        if (sphere.coverage[k] > 0 && value > unlit * brightest) lit.push_back(value);
-    }
-    if (lit.empty()) return {0};
-    const auto middle = lit.begin() + static_cast<std::ptrdiff_t>(lit.size() / 2);
-    std::nth_element(lit.begin(), middle, lit.end());
-    const double first = std::log2(shownAsWhite / *middle),
-                 last = std::log2(shownAsWhite / brightest);
-    const int count = std::clamp(1 + static_cast<int>(std::ceil((first - last) / 2)), 2, most);
-    std::vector<double> stops;
-    for (int k = 0; k < count; ++k) stops.push_back(first + (last - first) * k / (count - 1));
-    return stops;
+std::vector<double> exposuresOf(const SpherePicture& sphere) {
+    std::vector<double> largest;
+    for (std::size_t k = 0; k < sphere.coverage.size(); ++k)
+        if (sphere.coverage[k] > 0) largest.push_back(brightnessOf(sphere, k));
+    return flipExposures(std::move(largest));
 }
 
 /// The mean of a value per pixel over the pixels of the sphere that `counts` takes; 0 for none.
@@ -143,7 +128,7 @@ std::pair<double, double> differences(const SpherePicture& f, const SpherePictur
     const double brightest = *std::max_element(f.radiance.begin(), f.radiance.end());
     // Where all but the highlight is black, no exposure shows what counts as unlit as white.
     const double stops =
-        std::min(automaticExposure({&f, 1}), std::log2(shownAsWhite / (unlit * brightest)));
+        std::min(automaticExposure({&f, 1}), std::log2(shownAsWhite / (unlitShare * brightest)));
     const RgbPicture reference = exposed(f, stops), test = exposed(g, stops);
     const double colour = meanOver(
         f, [](std::size_t) { return true; },
@@ -177,12 +162,12 @@ double sphereFlip(const SpherePicture& f, const SpherePicture& g) {
     const double perDegree = sphereRadius * f.size / sphereDegrees;
     std::vector<float> largest(f.coverage.size(), 0.0F);
     const double brightest = *std::max_element(f.radiance.begin(), f.radiance.end());
-    for (const double stops : exposuresOf(f, brightest)) {
+    for (const double stops : exposuresOf(f)) {
         const std::vector<float> seen =
             flip(exposed(f, stops), exposed(g, stops), {.pixelsPerDegree = perDegree});
         for (std::size_t k = 0; k < seen.size(); ++k) largest[k] = std::max(largest[k], seen[k]);
     }
-    const double least = unlit * brightest;
+    const double least = unlitShare * brightest;
     return meanOver(
         f, [&](std::size_t k) { return brightnessOf(f, k) > least || brightnessOf(g, k) > least; },
         [&](std::size_t k) { return static_cast<double>(largest[k]); });

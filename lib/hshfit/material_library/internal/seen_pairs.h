@@ -27,7 +27,7 @@ struct SeenPairs {
     ///     sum over c and d of metric(pair, n c + d) e_c e_d,
     /// e errors of the n = 1 or 3 channels of `logs` at a pair: |J e|^2 / pairs, J the Jacobian of
     /// Hunt-adjusted L*a*b* over 40, which is about 1 for a bright grey. The exposure is the
-    /// longest of those of sphereFlip() at which the pixel is not clipped.
+    /// longest of flipExposures() at which the pixel is not clipped.
     Eigen::MatrixXd colours(const Eigen::MatrixXd& logs) const;
 
     std::vector<DirectionPair> pairs;
