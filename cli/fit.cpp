@@ -51,15 +51,14 @@ std::string samplesLine(const Json& fit) {
                        kinds.at(fit["samples_of"]), weights.at(fit["weights"]));
 }
 
-/// The parameters that were not fitted, if `model` states them or they are not at their defaults;
-/// empty where there are none.
-std::string heldLine(const Json& held, const std::string& model) {
+/// The parameters that were not fitted, if the model was given with them or they are not at their
+/// defaults; empty where there are none.
+std::string heldLine(const Json& held) {
     std::vector<std::string> texts;
     for (const Json& own : held) {
         const Json& value = own["value"];
         const auto name = own["name"].get<std::string>();
-        const bool stated = model.find(name.substr(name.find('.') + 1) + "=") != model.npos;
-        if (own.contains("default") && !stated) continue;
+        if (own.contains("default") && !own.contains("stated")) continue;
         if (value.is_string())
             texts.push_back(fmt::format("{} = {}", name, value.get<std::string>()));
         else
@@ -91,7 +90,7 @@ std::string text(const jobs::Fitted& fitted, const FitArguments& arguments) {
                                       : fmt::format("{:.6g}, not determined by the data", p.value);
         lines += fmt::format("  {:<24} {:>2} {}\n", p.name, p.channel, value);
     }
-    lines += heldLine(fitted.preset["fit"]["held"], arguments.options.model);
+    lines += heldLine(fitted.preset["fit"]["held"]);
     lines += instrumentText(result);
     if (fitted.search) lines += brdfs::textOf(*fitted.search);
     for (const auto& set : result.ambiguous)

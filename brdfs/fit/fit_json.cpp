@@ -76,6 +76,7 @@ Json heldJson(const FitResult& result, const FitSamples& samples) {
         list.push_back({{"name", held.name},
                         {"value", held.numbers.empty() ? Json(held.word) : std::move(value)}});
         if (held.isDefault) list.back()["default"] = true;
+        if (held.isStated) list.back()["stated"] = true;
     }
     return list;
 }

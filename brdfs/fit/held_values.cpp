@@ -29,14 +29,19 @@ std::vector<HeldValue> heldValues(std::string_view model, bool isotropic) {
             if (std::ranges::find(own.parameters, key, &Parameter::name) != own.parameters.end())
                 text += (text.empty() ? "" : ",") + item;
             else if (!item.empty())
-                held.push_back(
-                    {named(key), {}, item.substr(std::min(item.size(), key.size() + 1))});
+                held.push_back({.name = named(key),
+                                .numbers = {},
+                                .word = item.substr(std::min(item.size(), key.size() + 1)),
+                                .isStated = true});
         }
-        const Parameters values =
-            withHeldParameters(own, readParameters(own.name, own.parameters, text), isotropic);
+        const Parameters stated = readParameters(own.name, own.parameters, text),
+                         values = withHeldParameters(own, stated, isotropic);
         for (const Parameter& parameter : own.parameters) {
             if (!values.given(parameter.name)) continue;
-            HeldValue value{.name = named(parameter.name), .numbers = {}, .word = {}};
+            HeldValue value{.name = named(parameter.name),
+                            .numbers = {},
+                            .word = {},
+                            .isStated = stated.given(parameter.name)};
             const auto numbers = values.numbers.find(parameter.name);
             const auto word = values.words.find(parameter.name);
             if (numbers != values.numbers.end()) {

@@ -13,6 +13,7 @@ struct HeldValue {
     std::vector<double> numbers;  ///< one, or three of a colour; empty: `word`
     std::string word;
     bool isDefault = false;  ///< the default of the model
+    bool isStated = false;   ///< with the model
 };
 
 /// The held parameters of a model as it is given to fit, in the order of its terms and their

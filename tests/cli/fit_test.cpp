@@ -46,6 +46,11 @@ TEST_F(Cli, FitNamesTheParametersThatItHolds) {
     const std::string metal =
         run("fit ggx:alpha=.2,metal=gold,nm=550/650 --model ggx:metal=gold,kd=0").out;
     EXPECT_NE(metal.find("held: metal = gold, kd = 0\n"), std::string::npos) << metal;
+    // base_diffuse_roughness is at its default, and only coat_roughness is stated.
+    const std::string coat =
+        run("fit openpbr:coat_weight=.5 --model openpbr:coat_roughness=.1 --samples 200").out;
+    EXPECT_NE(coat.find("coat_roughness = 0.1"), std::string::npos) << coat;
+    EXPECT_EQ(coat.find("base_diffuse_roughness"), std::string::npos) << coat;
     const std::string free = run("fit lambert:kd=.3 --model lambert").out;
     EXPECT_EQ(free.find("held: "), std::string::npos) << free;
 }
