@@ -1,5 +1,7 @@
 #include "sheen_colour.h"
 
+#include <hshfit/linear_algebra/descend.h>
+
 #include <brdfs/analytic/gltf_pbr.h>
 #include <brdfs/fit/fit_result.h>
 #include <brdfs/fit/picture_samples.h>
@@ -34,30 +36,20 @@ double lossOf(const Parameters& p, const brdfs::FitSamples& samples) {
     return brdfs::lossOf(*brdfs::gltfPbrModel().make(p), samples, brdfs::Loss::Kind::picture);
 }
 
-/// The colours of the least loss, by steps along one channel after another that are halved where
-/// none helps.
-Colours searched(const Parameters& p, Colours colours, const brdfs::FitSamples& samples) {
-    constexpr double least = 1e-3;
-    Colours steps;
-    for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = std::max(0.05, 0.5 * colours[i]);
-    double loss = lossOf(withColours(p, colours), samples);
-    while (*std::ranges::max_element(steps) > least) {
-        for (std::size_t i = 0; i < colours.size(); ++i) {
-            bool lower = false;
-            for (const double step : {steps[i], -steps[i]}) {
-                Colours moved = colours;
-                moved[i] = std::clamp(colours[i] + step, 0.0, 1.0);
-                const double own = lossOf(withColours(p, moved), samples);
-                if (own >= loss) continue;
-                loss = own;
-                colours = moved;
-                lower = true;
-                break;
-            }
-            if (!lower) steps[i] /= 2;
-        }
-    }
-    return colours;
+/// The colours of the least loss.
+Colours searched(const Parameters& p, const Colours& colours, const brdfs::FitSamples& samples) {
+    std::vector<double> x(colours.begin(), colours.end());
+    std::vector<SearchAxis> axes;
+    for (const double channel : colours) axes.push_back({std::max(0.05, 0.5 * channel), 0, 1});
+    Colours own = colours;
+    descend(
+        [&](const std::vector<double>& moved) {
+            std::ranges::copy(moved, own.begin());
+            return lossOf(withColours(p, own), samples);
+        },
+        x, axes);
+    std::ranges::copy(x, own.begin());
+    return own;
 }
 
 }  // namespace
