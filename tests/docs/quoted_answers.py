@@ -9,14 +9,13 @@ examples/. Each quoted line has to appear in the answer, numbers within a fiftie
 
 Prints each breach as page:line and ends with 1 if there is one, or if a page quotes nothing.
 """
-import os
 import re
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
-TOP = Path(__file__).resolve().parents[2]
+from page_folder import TOP, page_folder
+
 NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.]*[a-zA-Z_])")
 
 
@@ -70,13 +69,7 @@ def same(quoted, said):
 
 def check_page(program, page):
     quoted = 0
-    with tempfile.TemporaryDirectory() as place:
-        folder, commands = Path(place) / "folder", Path(place) / "commands"
-        folder.mkdir()
-        commands.mkdir()
-        (commands / "hshfit").symlink_to(program)
-        (folder / "examples").symlink_to(TOP / "examples")
-        env = os.environ | {"PATH": f"{commands}:{os.environ['PATH']}", "COLUMNS": "1000"}
+    with page_folder(program, 1000) as (folder, env):
         for start, lines in blocks(page):
             for command, answer in quotations(lines):
                 done = subprocess.run(["bash", "-c", command], cwd=folder, env=env, text=True,

@@ -15,15 +15,13 @@ run_pages.py --script PAGE: prints the blocks that are run, as one script for ba
 another machine, where the program is installed. With the language of other blocks, as in
 `run_pages.py --script docs/reference/library.md cmake`, prints these.
 """
-import os
 import re
 import subprocess
 import sys
-import tempfile
 import time
 from pathlib import Path
 
-TOP = Path(__file__).resolve().parents[2]
+from page_folder import TOP, page_folder
 
 
 def blocks(page):
@@ -80,13 +78,7 @@ def squeezed(text):
 def run_page(program, page):
     """Breaches of a page."""
     ran = 0
-    with tempfile.TemporaryDirectory() as place:
-        folder, commands = Path(place) / "folder", Path(place) / "commands"
-        folder.mkdir()
-        commands.mkdir()
-        (commands / "hshfit").symlink_to(program)
-        (folder / "examples").symlink_to(TOP / "examples")
-        env = os.environ | {"PATH": f"{commands}:{os.environ['PATH']}", "COLUMNS": "100"}
+    with page_folder(program, 100) as (folder, env):
         output = ""
         for line, kind, text in blocks(page):
             if kind == "sh" and is_unrun(text):
