@@ -102,11 +102,12 @@ Json mapJson(const jobs::MapFacts& map) {
 
 std::string mapText(const Json& map) {
     const Json& first = map["levels"].at(0);
-    return factLine("map",
-                    fmt::format("{} x {} texels, {} levels, form {}, {} bytes",
-                                first["width"].get<std::size_t>(),
-                                first["height"].get<std::size_t>(), map["levels"].size(),
-                                map["form"].get<std::string>(), map["bytes"].get<std::size_t>())) +
+    return factLine(
+               "map",
+               fmt::format("{} x {} texels, {} level{}, form {}, {} bytes",
+                           first["width"].get<std::size_t>(), first["height"].get<std::size_t>(),
+                           map["levels"].size(), map["levels"].size() == 1 ? "" : "s",
+                           map["form"].get<std::string>(), map["bytes"].get<std::size_t>())) +
            factLine("texel", fmt::format("{},{} of level {}; :x=…,y=… names others",
                                          map["texel"]["x"].get<std::size_t>(),
                                          map["texel"]["y"].get<std::size_t>(),

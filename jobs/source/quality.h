@@ -25,8 +25,8 @@ struct Poor {
     std::string better = {};  ///< was tried, and is not poor; of fits, see judgeFit
     std::string toTry = {};   ///< was not tried
 
-    std::string line()
-        const;  ///< "poor: REASON; better: CALL", "…; to try: …", or that none is known
+    /// "poor: REASON; better: CALL", "…; to try: CALL", or that no form is known.
+    std::string line() const;
 };
 /// {"reason": …, "better": …}, and "to_try" where there is one.
 nlohmann::ordered_json poorJson(const Poor& poor);

@@ -32,7 +32,7 @@ std::string accuracyText(const std::optional<double>& accuracy) {
     if (!accuracy) return "–";
     const double missing = 1 - *accuracy;
     if (missing < 5e-9) return "100 %";
-    const int digits = std::clamp(static_cast<int>(1 - std::floor(std::log10(missing)) - 1), 1, 8);
+    const int digits = std::clamp(static_cast<int>(-std::floor(std::log10(missing))), 1, 8);
     const double scale = std::pow(10, digits);
     return fmt::format("{:.{}f} %", std::floor(100 * *accuracy * scale + 1e-6) / scale, digits);
 }

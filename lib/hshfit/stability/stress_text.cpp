@@ -227,7 +227,8 @@ std::string stressMarkdown(const StressReport& report) {
         text +=
             "\n## Rotation\nSH in double: two rotations against their product. Hemispherical bases "
             "in double: the matrix against the transpose of that of the inverse rotation, which is "
-            "not its inverse for makhotkin-flux. Float: matrix times vector against double. All "
+            "its inverse for bases that are orthonormal over solid angle; others have no such row. "
+            "Float: matrix times vector against double. All "
             "relative to the norm of a band.\n\n" +
             degreesTable(report.rotation);
     if (!report.basisChange.empty())
