@@ -48,7 +48,9 @@ TEST_F(Cli, FitNamesTheParametersThatItHolds) {
     EXPECT_NE(metal.find("held: metal = gold, kd = 0\n"), std::string::npos) << metal;
     // base_diffuse_roughness is at its default, and only coat_roughness is stated.
     const std::string coat =
-        run("fit openpbr:coat_weight=.5 --model openpbr:coat_roughness=.1 --samples 200").out;
+        run("fit openpbr:coat_weight=.5,coat_roughness=.3 --samples 60 --starts 1 --model "
+            "openpbr:coat_roughness=.1,fuzz_weight=0,base_metalness=0,specular_weight=1")
+            .out;
     EXPECT_NE(coat.find("coat_roughness = 0.1"), std::string::npos) << coat;
     EXPECT_EQ(coat.find("base_diffuse_roughness"), std::string::npos) << coat;
     const std::string free = run("fit lambert:kd=.3 --model lambert").out;
