@@ -35,12 +35,18 @@ double megabytes(std::size_t bytes) {
     return static_cast<double>(bytes) / 1e6;
 }
 
-/// The call that captures more of the poorest lobe; empty if none is known.
-std::string betterCall(const jobs::Svbrdf& done) {
+/// The call that captures more of the poorest lobe, and whether an order that suffices was found;
+/// of the form halfway no texel was tried. Empty if none is known.
+struct Advice {
+    std::string call;
+    bool isTried = false;
+};
+
+Advice adviceOf(const jobs::Svbrdf& done) {
     const std::string call =
         fmt::format("hshfit svbrdf {} -o {} --force", done.description, done.folder);
-    if (done.betterOrder) return fmt::format("{} --order {}", call, *done.betterOrder);
-    return done.halfwayIsBetter ? call + " --form halfway" : "";
+    if (done.betterOrder) return {fmt::format("{} --order {}", call, *done.betterOrder), true};
+    return {done.halfwayIsBetter ? call + " --form halfway" : "", false};
 }
 
 std::string textOf(const jobs::MapChoice& choice) {
@@ -139,12 +145,13 @@ std::string textOf(const jobs::Svbrdf& done, double total) {
             done.fit.column, done.fit.row);
     }
     if (!done.leastCaptured.empty()) {
-        const std::string better = betterCall(done);
+        const Advice advice = adviceOf(done);
         text += fmt::format(
             "the basis captures {} of the energy of {}, the least of all lobes{}{}\n",
             percent(done.captured, 2), done.leastCaptured,
             done.captured < PoorBounds{}.captured && done.form != "halfway" ? ": poor" : "",
-            better.empty() ? "" : "; better: " + better);
+            advice.call.empty() ? ""
+                                : (advice.isTried ? "; better: " : "; to try: ") + advice.call);
     }
     if (done.choices.size() > 1 || done.choices.front().pairs) text += choicesText(done.choices);
     if (done.library) text += textOf(*done.library);
@@ -184,8 +191,8 @@ void print(const jobs::Svbrdf& done, double total, const Globals& globals) {
     if (!globals.json) return printText(textOf(done, total));
     nlohmann::ordered_json json = jobs::svbrdfJson(done);
     json["seconds"]["total"] = total;
-    if (const std::string better = betterCall(done); !better.empty())
-        json["captured"]["better"] = better;
+    if (const Advice advice = adviceOf(done); !advice.call.empty())
+        json["captured"][advice.isTried ? "better" : "to_try"] = advice.call;
     printJson(json);
 }
 

@@ -323,6 +323,21 @@ TEST_F(Svbrdf, HalfwayMapsAreRefusedWhereTheyHaveNoForm) {
     EXPECT_EQ(gone, 1);
 }
 
+// No texel was projected in the form halfway: it is advice, not an answer.
+TEST_F(Svbrdf, AFormThatWasNotTriedIsToTry) {
+    writeMap("ks.pfm", 2, 2, [](int x, int) { return x == 0 ? 0.2F : 0.5F; });
+    describe("ggx", {{"alpha", 0.01}, {"ks", {{"map", "ks.pfm"}}}});
+    const Answer poor = made("-o " + path("out") + " --order 3");
+    ASSERT_EQ(poor.code, 0) << poor.err;
+    const Json captured = Json::parse(poor.out)["captured"];
+    EXPECT_FALSE(captured.contains("better")) << captured;
+    EXPECT_EQ(captured.value("to_try", ""),
+              "hshfit svbrdf " + path("d.json") + " -o " + path("out") + " --force --form halfway");
+    EXPECT_NE(run("svbrdf " + path("d.json") + " -o " + path("out") + " --order 3 --force")
+                  .out.find(": poor; to try: hshfit"),
+              std::string::npos);
+}
+
 TEST_F(Svbrdf, TheBetterCallNamesAnOrderThatCapturesEnough) {
     writeMap("ks.pfm", 2, 2, [](int x, int) { return x == 0 ? 0.2F : 0.5F; });
     describe("phong", {{"exponent", 12}, {"ks", {{"map", "ks.pfm"}}}});
