@@ -93,8 +93,10 @@ std::string text(const jobs::Fitted& fitted, const FitArguments& arguments) {
     lines += heldLine(fitted.preset["fit"]["held"]);
     lines += instrumentText(result);
     if (fitted.search) lines += brdfs::textOf(*fitted.search);
+    // A parameter that is open by itself is "not determined by the data" in its own line.
     for (const auto& set : result.ambiguous)
-        lines += fmt::format("  ambiguous together: {}\n", fmt::join(set, ", "));
+        if (set.size() > 1)
+            lines += fmt::format("  ambiguous together: {}\n", fmt::join(set, ", "));
     lines += fmt::format("  rms residual {:.6g} over {} values, {} iterations, {}\n", result.loss,
                          result.values, result.iterations,
                          result.converged ? "converged" : "NOT CONVERGED");

@@ -2,6 +2,7 @@
 
 #include <hshfit/linear_algebra/decompositions.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace hshfit::brdfs {
@@ -67,12 +68,15 @@ Covariance covarianceOf(const Equations& equations, const std::vector<bool>& fix
     std::vector<bool> undetermined(scaled.free.size(), false);
     for (Eigen::Index e = 0; e < n; ++e) {
         if (scaled.eigen.eigenvalues()(e) > least) continue;
-        result.ambiguous.emplace_back();
+        std::vector<std::size_t> set;
         for (Eigen::Index i = 0; i < n; ++i)
             if (std::abs(scaled.eigen.eigenvectors()(i, e)) > share) {
-                result.ambiguous.back().push_back(scaled.free[i]);
+                set.push_back(scaled.free[i]);
                 undetermined[i] = true;
             }
+        // Several directions of one set of parameters may be open.
+        if (std::ranges::find(result.ambiguous, set) == result.ambiguous.end())
+            result.ambiguous.push_back(std::move(set));
     }
     // The cost, 1 for f = 0, is known to its rounding alone: parameters to the step that raises it
     // by as much.

@@ -228,7 +228,8 @@ private:
         addText("Parameters of the model. " + parameterLegend(report_));
         addTable(parameterTable(report_, fit_, false), "llrrrrrl");
         for (const auto& set : report_.result.ambiguous)
-            addText(fmt::format("The data do not tell apart: {}.", fmt::join(set, ", ")));
+            if (set.size() > 1)
+                addText(fmt::format("The data do not tell apart: {}.", fmt::join(set, ", ")));
         addValues();
     }
 

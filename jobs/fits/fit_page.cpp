@@ -120,7 +120,7 @@ FitSection addFitSection(const brdfs::FitReport& report, const nlohmann::ordered
     page.set("legend", parameterLegend(report));
     std::vector<std::string> ambiguous;
     for (const auto& set : report.result.ambiguous)
-        ambiguous.push_back(fmt::format("{}", fmt::join(set, ", ")));
+        if (set.size() > 1) ambiguous.push_back(fmt::format("{}", fmt::join(set, ", ")));
     page.set("ambiguous", textsOf(ambiguous));
     page.set("budget", tableOf(budgetTable(report.result)));
     if (report.result.instrument) {

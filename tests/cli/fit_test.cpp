@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 
 namespace {
@@ -55,6 +56,25 @@ TEST_F(Cli, FitNamesTheParametersThatItHolds) {
     EXPECT_EQ(coat.find("base_diffuse_roughness"), std::string::npos) << coat;
     const std::string free = run("fit lambert:kd=.3 --model lambert").out;
     EXPECT_EQ(free.find("held: "), std::string::npos) << free;
+}
+
+// phong1 and phong2 stand for one lobe: their sets are named once. A roughness that the data do
+// not show is in its own line alone.
+TEST_F(Cli, FitNamesTogetherWhatTheDataDoNotTellApart) {
+    const std::string call =
+        "fit phong:ks=.5,exponent=20 --model phong+phong --samples 300 --starts 4";
+    const Answer answer = run(call + " --json");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    const Json document = Json::parse(answer.out);
+    std::set<Json> sets;
+    for (const Json& own : document["fit"]["ambiguous"])
+        EXPECT_TRUE(sets.insert(own).second) << "twice: " << own;
+    EXPECT_FALSE(sets.empty());
+    EXPECT_NE(run(call).out.find("ambiguous together: phong1."), std::string::npos);
+    const std::string alone =
+        run("fit lambert:kd=.3 --model lambert+ggx --samples 300 --starts 4").out;
+    EXPECT_NE(alone.find("not determined by the data"), std::string::npos) << alone;
+    EXPECT_EQ(alone.find("ambiguous together"), std::string::npos) << alone;
 }
 
 // A start of many fails, and the others do not.
