@@ -24,6 +24,21 @@ namespace {
 
 constexpr double startAngles[] = {0.5, 0.85, 1.15};  // radians, of rows whose search is free
 
+/// SH coefficients of a function turned about +z by -azimuth: f'(phi) = f(phi + azimuth).
+std::vector<double> turnedBack(std::span<const double> from, int order, double azimuth) {
+    std::vector<double> result(from.begin(), from.end());
+    for (int l = 0; l < order; ++l) {
+        for (int m = 1; m <= l; ++m) {
+            const auto even = static_cast<std::size_t>(bases::slotOf(l, m)),
+                       odd = static_cast<std::size_t>(bases::slotOf(l, -m));
+            const double c = std::cos(m * azimuth), s = std::sin(m * azimuth);
+            result[even] = c * from[even] + s * from[odd];
+            result[odd] = c * from[odd] - s * from[even];
+        }
+    }
+    return result;
+}
+
 /// f cos(theta_i) of every row in the frame with wo.y = 0.
 std::vector<LobeTarget> targetsOf(const Brdf& brdf, const Basis& basis,
                                   const ElevationTable& table) {

@@ -36,17 +36,46 @@ Direction unit(const Direction& d) {
     return {d.x / length, d.y / length, d.z / length};
 }
 
-/// Products of two kernels about axes of that cosine, in the weights of bands.
-double product(const std::vector<double>& a, const std::vector<double>& b, double cosine) {
-    double before = 0, here = 1, sum = 0;
-    for (std::size_t l = 0; l < a.size(); ++l) {
-        const auto n = static_cast<double>(l);
-        sum += bandWeight(static_cast<int>(l)) * a[l] * b[l] * (2 * n + 1) / (4 * pi) * here;
-        const double next = ((2 * n + 1) * cosine * here - n * before) / (n + 1);
+using Bands = Eigen::Array<double, Eigen::Dynamic, 1, 0, PrefilteredTable::bands, 1>;
+
+Eigen::Map<const Eigen::ArrayXd> mapped(const std::vector<double>& values) {
+    return {values.data(), static_cast<Eigen::Index>(values.size())};
+}
+
+/// By band: its weight, the weight by (2 l + 1) / (4 pi), and the factors of Legendre's recurrence
+/// P_{l+1}(x) = rise x P_l(x) - fall P_{l-1}(x).
+struct BandNumbers {
+    std::array<double, PrefilteredTable::bands> weight, kernel, rise, fall;
+
+    BandNumbers() {
+        for (std::size_t l = 0; l < weight.size(); ++l) {
+            const auto n = static_cast<double>(l);
+            weight[l] = bandWeight(static_cast<int>(l));
+            kernel[l] = weight[l] * (2 * n + 1) / (4 * pi);
+            rise[l] = (2 * n + 1) / (n + 1);
+            fall[l] = n / (n + 1);
+        }
+    }
+};
+const BandNumbers numbers;
+
+/// Summands of the product of a kernel with another, but for those of the other: [l]. `cosine` is
+/// that of the angle between their axes.
+Bands turned(const std::vector<double>& bands, double cosine) {
+    Bands result(static_cast<Eigen::Index>(bands.size()));
+    double before = 0, here = 1;
+    for (std::size_t l = 0; l < bands.size(); ++l) {
+        result(static_cast<Eigen::Index>(l)) = numbers.kernel[l] * bands[l] * here;
+        const double next = numbers.rise[l] * cosine * here - numbers.fall[l] * before;
         before = here;
         here = next;
     }
-    return sum;
+    return result;
+}
+
+/// Products of two kernels about axes of that cosine, in the weights of bands.
+double product(const std::vector<double>& a, const std::vector<double>& b, double cosine) {
+    return (mapped(a) * turned(b, cosine)).sum();
 }
 
 /// A product of two kernels on one axis with the ridge.
@@ -80,22 +109,10 @@ double bandWeight(int l) {
     return g * g;
 }
 
-std::vector<double> turnedBack(std::span<const double> from, int order, double azimuth) {
-    std::vector<double> result(from.begin(), from.end());
-    for (int l = 0; l < order; ++l) {
-        for (int m = 1; m <= l; ++m) {
-            const auto even = static_cast<std::size_t>(bases::slotOf(l, m)),
-                       odd = static_cast<std::size_t>(bases::slotOf(l, -m));
-            const double c = std::cos(m * azimuth), s = std::sin(m * azimuth);
-            result[even] = c * from[even] + s * from[odd];
-            result[odd] = c * from[odd] - s * from[even];
-        }
-    }
-    return result;
-}
-
 LobeTarget::LobeTarget(const Basis& basis, std::array<std::vector<double>, 3> f)
     : basis_(&basis), f_(std::move(f)) {
+    for (std::size_t i = 0; i < f_[0].size(); ++i)
+        bySlot_.emplace_back(f_[0][i], f_[1][i], f_[2][i], 0);
     for (const std::vector<double>& channel : f_)
         for (int l = 0; l < basis.order(); ++l)
             for (int m = -l; m <= l; ++m)
@@ -103,19 +120,23 @@ LobeTarget::LobeTarget(const Basis& basis, std::array<std::vector<double>, 3> f)
                          std::pow(channel[static_cast<std::size_t>(bases::slotOf(l, m))], 2);
 }
 
-std::vector<double> LobeTarget::along(const Direction& axis) const {
+std::vector<Eigen::Array4d> LobeTarget::along(const Direction& axis) const {
     std::vector<double> y(static_cast<std::size_t>(basis_->slots()));
     basis_->evaluate(axis, y.data());
-    const int order = basis_->order();
-    std::vector<double> result;
-    for (const std::vector<double>& channel : f_) {
-        for (int l = 0; l < order; ++l) {
-            double sum = 0;
-            for (std::size_t i = static_cast<std::size_t>(l * l);
-                 i < static_cast<std::size_t>((l + 1) * (l + 1)); ++i)
-                sum += channel[i] * y[i];
-            result.push_back(sum);
+    const auto order = static_cast<std::size_t>(basis_->order());
+    std::vector<Eigen::Array4d> result;
+    result.reserve(order);
+    for (std::size_t l = 0; l < order; ++l) {
+        // Sines vanish in the plane y = 0. Two sums, so that one addition waits less for another.
+        Eigen::Array4d sum = Eigen::Array4d::Zero(), other = sum;
+        const std::size_t end = (l + 1) * (l + 1);
+        std::size_t i = l * l + (axis.y == 0 ? l : 0);
+        for (; i + 1 < end; i += 2) {
+            sum += bySlot_[i] * y[i];
+            other += bySlot_[i + 1] * y[i + 1];
         }
+        if (i < end) sum += bySlot_[i] * y[i];
+        result.emplace_back(sum + other);
     }
     return result;
 }
@@ -149,14 +170,14 @@ public:
     }
 
     AxisProducts along(const Direction& axis) const {
-        const std::vector<double> values = target_.along(axis);
+        const std::vector<Eigen::Array4d> values = target_.along(axis);
         AxisProducts result{axis, std::vector<Rgb>(search_.levels_.size())};
-        const auto bands = static_cast<std::size_t>(search_.bands_);
-        for (std::size_t j = 0; j < search_.levels_.size(); ++j)
-            for (std::size_t c = 0; c < 3; ++c)
-                for (std::size_t l = 0; l < bands; ++l)
-                    result.byLevel[j][c] += bandWeight(static_cast<int>(l)) *
-                                            search_.levels_[j][l] * values[c * bands + l];
+        for (std::size_t j = 0; j < search_.levels_.size(); ++j) {
+            Eigen::Array4d sum = Eigen::Array4d::Zero();
+            for (std::size_t l = 0; l < values.size(); ++l)
+                sum += numbers.weight[l] * search_.levels_[j][l] * values[l];
+            result.byLevel[j] = {sum(0), sum(1), sum(2)};
+        }
         return result;
     }
 
@@ -185,13 +206,15 @@ public:
         std::vector<double> own(count), beside(count);
         const auto firstLevel = static_cast<std::size_t>(from);
         const auto lastLevel = std::min(count - 1, static_cast<std::size_t>(std::ceil(to)));
-        for (std::size_t j = firstLevel; j <= lastLevel; ++j) {
-            const std::vector<double>& level = search_.levels_[j];
-            const std::vector<Standing>& terms = fixed_.terms;
+        const std::vector<Standing>& terms = fixed_.terms;
+        for (std::size_t j = firstLevel; j <= lastLevel; ++j)
             cross[j].resize(static_cast<Eigen::Index>(terms.size()));
-            for (std::size_t i = 0; i < terms.size(); ++i)
-                cross[j](static_cast<Eigen::Index>(i)) =
-                    product(level, terms[i].bands, dot(products.axis, terms[i].axis));
+        for (std::size_t i = 0; i < terms.size(); ++i) {
+            const Bands term = turned(terms[i].bands, dot(products.axis, terms[i].axis));
+            for (std::size_t j = firstLevel; j <= lastLevel; ++j)
+                cross[j](static_cast<Eigen::Index>(i)) = (mapped(search_.levels_[j]) * term).sum();
+        }
+        for (std::size_t j = firstLevel; j <= lastLevel; ++j) {
             shared[j] = fixed_.factor.solve(cross[j]);
             own[j] = search_.selfProduct(j, j) - cross[j].dot(shared[j]);
             if (j > firstLevel)
@@ -278,11 +301,12 @@ private:
             return terms[static_cast<std::size_t>(i)];
         };
         Small gram(n, n);
-        for (Eigen::Index i = 0; i < n; ++i)
-            for (Eigen::Index j = 0; j < n; ++j)
-                gram(i, j) = i == j
-                                 ? withRidge(product(at(i).bands, at(i).bands, 1))
-                                 : product(at(i).bands, at(j).bands, dot(at(i).axis, at(j).axis));
+        for (Eigen::Index i = 0; i < n; ++i) {
+            gram(i, i) = withRidge(product(at(i).bands, at(i).bands, 1));
+            for (Eigen::Index j = 0; j < i; ++j)
+                gram(i, j) = gram(j, i) =
+                    product(at(i).bands, at(j).bands, dot(at(i).axis, at(j).axis));
+        }
         Equations result;
         result.factor.compute(gram);
         for (std::size_t c = 0; c < 3; ++c) {

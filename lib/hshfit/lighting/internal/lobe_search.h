@@ -4,6 +4,8 @@
 #include <hshfit/brdf/brdf.h>
 #include <hshfit/lighting/prefilter.h>
 
+#include <Eigen/Core>
+
 #include <array>
 #include <cstddef>
 #include <span>
@@ -13,9 +15,6 @@ namespace hshfit::lighting {
 
 /// The square of a band's weight: 100 for the albedo, 0.3 / l for the others.
 double bandWeight(int l);
-
-/// SH coefficients of a function turned about +z by -azimuth: f'(phi) = f(phi + azimuth).
-std::vector<double> turnedBack(std::span<const double> coefficients, int order, double azimuth);
 
 struct LobePlace {
     Direction axis;
@@ -27,8 +26,8 @@ class LobeTarget {
 public:
     LobeTarget(const Basis& basis, std::array<std::vector<double>, 3> f);
 
-    /// [channel * order + l]: the sum over m of f_{l,m} Y_{l,m}(axis).
-    std::vector<double> along(const Direction& axis) const;
+    /// [l]: the sums over m of f_{l,m} Y_{l,m}(axis), by channel; the fourth is 0.
+    std::vector<Eigen::Array4d> along(const Direction& axis) const;
     /// The sum of squares with the weights of bands, over channels.
     double size() const { return size_; }
     /// The coefficients less the coefficients of lobes: [channel][slot].
@@ -40,6 +39,7 @@ public:
 private:
     const Basis* basis_;
     std::array<std::vector<double>, 3> f_;
+    std::vector<Eigen::Array4d> bySlot_;  ///< f_ and a 0
     double size_ = 0;
 };
 
