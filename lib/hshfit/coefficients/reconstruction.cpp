@@ -45,6 +45,25 @@ void Reconstruction::eval(const Direction& wo, DirectionBatch wi, double* out) c
     }
 }
 
+namespace {
+
+/// Sums over i of c_i columns[i * count + k], for each k in the order of i.
+void addColumns(std::span<const double> c, const double* columns, std::size_t count, double* out) {
+    if (count == 1) {
+        double sum = 0;
+        for (std::size_t i = 0; i < c.size(); ++i) sum += c[i] * columns[i];
+        *out = sum;
+        return;
+    }
+    std::fill_n(out, count, 0.0);
+    for (std::size_t i = 0; i < c.size(); ++i) {
+        const double* const column = columns + i * count;
+        for (std::size_t k = 0; k < count; ++k) out[k] += c[i] * column[k];
+    }
+}
+
+}  // namespace
+
 void synthesise(const Basis& basis, std::span<const double> c, DirectionBatch wi, double* out) {
     const std::size_t slots = basis.slots(), channels = c.size() / slots;
     // Blocks keep the basis values in cache whatever the order.
@@ -53,14 +72,12 @@ void synthesise(const Basis& basis, std::span<const double> c, DirectionBatch wi
     std::vector<double> values(block * slots);
     for (std::size_t first = 0; first < wi.count; first += block) {
         const std::size_t count = std::min(block, wi.count - first);
-        basis.evaluate({wi.x + first, wi.y + first, wi.z + first, count}, values.data());
-        for (std::size_t k = 0; k < count; ++k) {
-            const double* row = values.data() + k * slots;
-            for (std::size_t channel = 0; channel < channels; ++channel) {
-                double sum = 0;
-                for (std::size_t i = 0; i < slots; ++i) sum += c[channel * slots + i] * row[i];
-                out[channel * wi.count + first + k] = wi.z[first + k] > 0 ? sum : 0;
-            }
+        basis.evaluateColumns({wi.x + first, wi.y + first, wi.z + first, count}, values.data());
+        for (std::size_t channel = 0; channel < channels; ++channel) {
+            double* const to = out + channel * wi.count + first;
+            addColumns(c.subspan(channel * slots, slots), values.data(), count, to);
+            for (std::size_t k = 0; k < count; ++k)
+                if (!(wi.z[first + k] > 0)) to[k] = 0;
         }
     }
 }
