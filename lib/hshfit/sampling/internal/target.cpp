@@ -5,6 +5,8 @@
 #include <hshfit/sampling/internal/elevation_bins.h>
 #include <hshfit/sampling/internal/mirror_cells.h>
 
+#include <Eigen/Core>
+
 #include <algorithm>
 #include <cmath>
 
@@ -129,16 +131,28 @@ LeastMoment leastSecondMoment(std::span<const Target> targets,
     LeastMoment best{std::vector<double>(parts.size(), 1 / static_cast<double>(parts.size()))};
     std::vector<double>& shares = best.shares;
     std::vector<double> slope(parts.size());
+    // A block of nodes at a time, which stays in the cache.
+    constexpr std::size_t block = 512;
+    using Block = Eigen::Array<double, Eigen::Dynamic, 1, 0, block, 1>;
+    const auto nodes = [&](const std::vector<double>& all, std::size_t from) {
+        return Eigen::Map<const Eigen::ArrayXd>(
+            all.data() + from, static_cast<Eigen::Index>(std::min(block, all.size() - from)));
+    };
+    Block density, inverse, term;
     for (int step = 0; step <= steps; ++step) {
         best.moment = 0;
         std::ranges::fill(slope, 0.0);
-        for (std::size_t j = 0; j < square.size(); ++j) {
-            if (square[j] == 0) continue;
-            double p = 0;
-            for (std::size_t k = 0; k < parts.size(); ++k) p += shares[k] * (*parts[k])[j];
-            const double term = square[j] / p;
-            best.moment += term / count;
-            for (std::size_t k = 0; k < parts.size(); ++k) slope[k] += term * ((*parts[k])[j] / p);
+        for (std::size_t from = 0; from < square.size(); from += block) {
+            const auto here = nodes(square, from);
+            density = shares[0] * nodes(*parts[0], from);
+            for (std::size_t k = 1; k < parts.size(); ++k)
+                density += shares[k] * nodes(*parts[k], from);
+            inverse = (here > 0).select(density.inverse(), 0);
+            term = here * inverse;
+            best.moment += term.sum() / count;
+            term *= inverse;
+            for (std::size_t k = 0; k < parts.size(); ++k)
+                slope[k] += (term * nodes(*parts[k], from)).sum();
         }
         if (step == steps || best.moment == 0) break;
         double sum = 0;
