@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 namespace hshfit::lighting {
@@ -127,16 +128,11 @@ std::vector<Eigen::Array4d> LobeTarget::along(const Direction& axis) const {
     std::vector<Eigen::Array4d> result;
     result.reserve(order);
     for (std::size_t l = 0; l < order; ++l) {
-        // Sines vanish in the plane y = 0. Two sums, so that one addition waits less for another.
-        Eigen::Array4d sum = Eigen::Array4d::Zero(), other = sum;
-        const std::size_t end = (l + 1) * (l + 1);
-        std::size_t i = l * l + (axis.y == 0 ? l : 0);
-        for (; i + 1 < end; i += 2) {
+        // Sines vanish in the plane y = 0.
+        Eigen::Array4d sum = Eigen::Array4d::Zero();
+        for (std::size_t i = l * l + (axis.y == 0 ? l : 0); i < (l + 1) * (l + 1); ++i)
             sum += bySlot_[i] * y[i];
-            other += bySlot_[i + 1] * y[i + 1];
-        }
-        if (i < end) sum += bySlot_[i] * y[i];
-        result.emplace_back(sum + other);
+        result.push_back(sum);
     }
     return result;
 }
@@ -169,9 +165,13 @@ public:
         return axis.z > 1e-3 && angleBetween(axis, {0, 0, 1}) <= mostLean * theta_ + 1e-9;
     }
 
-    AxisProducts along(const Direction& axis) const {
+    /// Rounds ask again for the axes of rounds before.
+    const AxisProducts& along(const Direction& axis) {
+        const auto [found, added] = known_.try_emplace({axis.x, axis.y, axis.z});
+        AxisProducts& result = found->second;
+        if (!added) return result;
         const std::vector<Eigen::Array4d> values = target_.along(axis);
-        AxisProducts result{axis, std::vector<Rgb>(search_.levels_.size())};
+        result = {axis, std::vector<Rgb>(search_.levels_.size())};
         for (std::size_t j = 0; j < search_.levels_.size(); ++j) {
             Eigen::Array4d sum = Eigen::Array4d::Zero();
             for (std::size_t l = 0; l < values.size(); ++l)
@@ -181,9 +181,7 @@ public:
         return result;
     }
 
-    Standing standing(const Direction& axis, double place) const {
-        return standing(along(axis), place);
-    }
+    Standing standing(const Direction& axis, double place) { return standing(along(axis), place); }
     Standing standing(const AxisProducts& products, double place) const {
         const std::size_t first =
             std::min(static_cast<std::size_t>(place), search_.levels_.size() - 2);
@@ -324,15 +322,15 @@ private:
 
     template <class Within>
     Standing moved(const Standing& lobe, std::size_t number, std::span<const AxisProducts> axes,
-                   const Within& within) const {
-        AxisProducts best = along(lobe.axis);
+                   const Within& within) {
+        const AxisProducts* best = &along(lobe.axis);
         const std::pair<double, double> range = within.levels(number);
-        BestLevel level = this->best(best, range.first, range.second);
-        const auto take = [&](AxisProducts products) {
+        BestLevel level = this->best(*best, range.first, range.second);
+        const auto take = [&](const AxisProducts& products) {
             const BestLevel found = this->best(products, range.first, range.second);
             if (!(found.gain > level.gain * (1 + 1e-9))) return false;
             level = found;
-            best = std::move(products);
+            best = &products;
             return true;
         };
         for (const AxisProducts& products : axes)
@@ -340,11 +338,11 @@ private:
         for (double step = radians(gridStep); step > radians(0.1); step /= 2) {
             for (bool better = true; better;) {
                 better = false;
-                for (const Direction& d : beside(best.axis, step))
+                for (const Direction& d : beside(best->axis, step))
                     if (allowed(d) && within.axis(number, d) && take(along(d))) better = true;
             }
         }
-        return standing(best, level.place);
+        return standing(*best, level.place);
     }
 
     std::vector<Direction> beside(const Direction& axis, double step) const {
@@ -360,6 +358,7 @@ private:
     double theta_;
     Standing diffuse_;
     Equations fixed_;
+    std::map<std::array<double, 3>, AxisProducts> known_;
 };
 
 LobeSearch::LobeSearch(int bands, const Prefilter& engine, std::size_t lobes, bool inPlane)
