@@ -68,6 +68,9 @@ export const decoded = (text, Type) => {
   return new Type(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength));
 };
 
+// Floats as text for a page, whose `checks.floatsOf` reads it. Lists of numbers go to and fro one by one.
+export const encoded = (floats) => Buffer.from(Float32Array.from(floats).buffer).toString('base64');
+
 // Answers the requests of a page that imports three.js: the page itself, the files of three.js, and those of
 // `folder`.
 export const filesOfThree = (folder, page) => (path) => {

@@ -91,8 +91,8 @@ async function plane({ file, pairs, strict }) {
   return { values, type: material.type };
 }
 
-// In the page: the file's own mesh, seen from +z, lit from `wi`.
-async function mesh({ file, wi, size, strict }) {
+// In the page: the file's own mesh, seen from +z, lit from `wi`; the pixels of those places.
+async function mesh({ file, wi, size, strict, places }) {
   const { scene: loaded } = await new GLTFLoader().loadAsync(file);
   loaded.traverse((node) => {
     if (node.isMesh && strict) node.material = window.strictly(node.material.clone());
@@ -110,7 +110,7 @@ async function mesh({ file, wi, size, strict }) {
   renderer.readRenderTargetPixels(target, 0, 0, size, size, pixels);
   renderer.dispose();
   renderer.forceContextLoss();
-  return [...pixels];
+  return places.map((at) => [...pixels.slice(4 * at, 4 * at + 3)]);
 }
 
 const unit = (v) => v.map((x) => x / Math.hypot(...v));
@@ -210,10 +210,10 @@ await finish(() =>
         const results = {};
         for (const mode of [true, false]) {
           const drawn = await on.evaluate(plane, { file: `/files/${file}.glb`, pairs, strict: mode });
-          const seen = await on.evaluate(mesh, { file: `/files/${file}.glb`, wi, size, strict: mode });
+          const seen = await on.evaluate(mesh,
+            { file: `/files/${file}.glb`, wi, size, strict: mode, places });
           results[mode] = compared(drawn.values, expected);
-          results[`sphere ${mode}`] = compared(
-            places.map((at) => seen.slice(4 * at, 4 * at + 3)), onSphere);
+          results[`sphere ${mode}`] = compared(seen, onSphere);
         }
         const percent = (x) => `${(100 * x).toFixed(2)} %`.padStart(9);
         const { true: formula, false: asIs } = results;

@@ -1,6 +1,7 @@
 // Functions for every page that browser.mjs opens.
 globalThis.checks = {
   bytesOf: (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)),
+  floatsOf: (text) => new Float32Array(checks.bytesOf(text).buffer),
 
   // A program in use whose fragment shader sees the whole target, one triangle of three vertices
   // without attributes.

@@ -6,7 +6,7 @@ import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, normalize, resolve } from 'node:path';
-import { expect, finish, here, withBrowser } from './browser.mjs';
+import { encoded, expect, finish, here, withBrowser } from './browser.mjs';
 
 const [driver, program] = [process.argv[2], resolve(process.argv[3])];
 const gpu = driver === 'webgpu';
@@ -112,7 +112,7 @@ function picture(width, height) {
       texels.push(...pictureFrom([across * Math.cos(phi), Math.sin(latitude), across * Math.sin(phi)]), 1);
     }
   }
-  return { width, height, texels };
+  return { width, height, texels: encoded(texels) };
 }
 // The world's light from d when the picture is turned by `turn` about +y.
 const turnedFrom = ([x, y, z]) => {
@@ -183,7 +183,7 @@ async function draw({ name, gpu, kind, side, view, lights, environment, tangents
   }
   if (kind === 'picture') {
     const { width, height, texels } = picture;
-    const map = new three.DataTexture(new Float32Array(texels), width, height, three.RGBAFormat, three.FloatType);
+    const map = new three.DataTexture(checks.floatsOf(texels), width, height, three.RGBAFormat, three.FloatType);
     map.mapping = three.EquirectangularReflectionMapping;
     map.minFilter = map.magFilter = three.LinearFilter;
     map.needsUpdate = true;
@@ -217,6 +217,8 @@ const cross = (a, b) => [0, 1, 2].map((i) => a[(i + 1) % 3] * b[(i + 2) % 3] - a
 const unit = (a) => a.map((x) => x / Math.hypot(...a));
 const minus = (a, b) => a.map((x, i) => x - b[i]);
 const rotate = (m, v) => [0, 1, 2].map((r) => m[r] * v[0] + m[4 + r] * v[1] + m[8 + r] * v[2]);
+
+const surroundings = picture(1024, 512);
 
 // The pixels that show the sphere well: their place, point, frame and wo. `up`: the rows begin above.
 function surfacePoints({ camera, mesh }, up, tangents) {
@@ -335,7 +337,7 @@ async function proveMaterial(page, { name, spec, sampled = false, tangents = fal
       lights,
       environment: [...environment],
       tangents,
-      picture: kind === 'picture' ? picture(1024, 512) : null,
+      picture: kind === 'picture' ? surroundings : null,
       turn,
     });
     let points = surfacePoints(drawn, gpu, tangents);
@@ -361,7 +363,7 @@ async function proveMember(page, { name, spec, from, kinds }) {
   for (const kind of kinds) {
     const drawn = await page.evaluate(draw, {
       ...{ name, gpu, kind, side, view, lights, turn, member, from },
-      picture: kind === 'picture' ? picture(1024, 512) : null,
+      picture: kind === 'picture' ? surroundings : null,
     });
     const file = `${name}.library:${member}`;
     const title = `${name}, ${member} by ${from}, ${kind}`;
