@@ -133,8 +133,12 @@ TEST_F(SvbrdfLibrary, AGivenLibraryServes) {
 /// The map has the same bytes as by a call without the limit.
 TEST_F(SvbrdfLibrary, SecondsEndTheMeasuring) {
     describe();
-    for (const std::string form : {"library", "low-rank", "halfway"}) {
-        const std::string base = "svbrdf " + path("d.json") + " --json --form " + form;
+    for (const auto& [form, options] :
+         {std::pair<std::string, std::string>{"library", "--components 3"},
+          {"low-rank", ""},
+          {"halfway", "--clusters 2 --halfway 3,2,1"}}) {
+        const std::string base =
+            "svbrdf " + path("d.json") + " --json --form " + form + " " + options;
         const Answer answer = run(base + " --seconds 0.01 -o " + path(form));
         ASSERT_EQ(answer.code, 0) << answer.err;
         EXPECT_TRUE(keepsSchema(answer.out, "svbrdf")) << form;

@@ -66,7 +66,7 @@ await finish(async () => {
             const { numbers, pairs, images, labels, absent, means } = await open(
               page,
               name,
-              `frames=1&cycles=16&lighting=${light}`,
+              `frames=1&cycles=4&lighting=${light}`,
             );
             expect(images.length === (alone ? 2 : 3), `${name}: pictures ${images}`);
             expect(means.every((mean) => mean > 1e-2), `${name}, ${light}: black: ${means}`);
