@@ -6,6 +6,8 @@
 
 #include <hshfit/bases/catalog.h>
 #include <hshfit/brdf/transmission.h>
+#include <hshfit/coefficient_files/coefficient_file.h>
+#include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/error.h>
 #include <hshfit/files/extension.h>
 #include <hshfit/light/catalog.h>
@@ -13,6 +15,7 @@
 #include <hshfit/percent.h>
 #include <hshfit/pictures/sphere_picture.h>
 #include <hshfit/projection/projection.h>
+#include <hshfit/representation/forms/represented_brdf.h>
 #include <hshfit/transport/possible_radiance.h>
 #include <hshfit/wording.h>
 
@@ -60,6 +63,7 @@ SurfacePoints pointsOf(const RenderOptions& options, const View& view, Rendered&
 /// A material, its picture by integration, and its coefficients in each basis and order.
 struct Material {
     std::unique_ptr<Brdf> brdf;
+    std::string name = {};
     std::optional<LitPicture> truth = {};
     std::vector<Projection> projections = {};
 };
@@ -166,6 +170,16 @@ void remark(const RenderedPicture& picture, std::size_t points, const Listener& 
     }
 }
 
+/// Tells the listener that integration of a file of coefficients is of their own sum.
+void remarkOwnSum(const Material& material, const RenderOptions& options,
+                  const Listener& listener) {
+    if (options.by != RenderOptions::By::both || material.name == material.brdf->name()) return;
+    listener.say(
+        fmt::format("{0}: both ways show the sum of its coefficients, projected again for the "
+                    "second; what it loses of {1} is seen beside that: render {1} {0}",
+                    material.name, material.brdf->name()));
+}
+
 /// Tells the listener about a pane that shows no light: all of it falls on the viewer's side.
 void remarkBlack(const Brdf& brdf, const SpherePicture& picture, const RenderOptions& options,
                  const Listener& listener) {
@@ -239,6 +253,8 @@ public:
     void open(const std::vector<std::string>& specs) {
         for (const std::string& spec : specs) {
             materials_.push_back({.brdf = openSource(spec, /*rgb=*/true, Sides::either)});
+            materials_.back().name = shownName(spec, *materials_.back().brdf);
+            remarkOwnSum(materials_.back(), options_, listener_);
             const Brdf &first = *materials_.front().brdf, &last = *materials_.back().brdf;
             if (transmits(first) != transmits(last))
                 throw UsageError(
@@ -250,7 +266,7 @@ public:
 
     void light() {
         for (Material& material : materials_) {
-            const std::string name = material.brdf->name();
+            const std::string& name = material.name;
             if (light_) {
                 SlowNote slow(name, options_, listener_);
                 const auto steps = [&slow, shown = listener_.part(name)](std::size_t done,
@@ -295,7 +311,7 @@ public:
     void fill(SheetBuilder& sheet, double stops) const {
         for (std::size_t m = 0; m < materials_.size(); ++m) {
             const Material& material = materials_[m];
-            const std::string name = material.brdf->name();
+            const std::string& name = material.name;
             sheet.startRow();
             if (material.truth) {
                 RenderedPicture facts{.brdf = name,
@@ -340,7 +356,7 @@ private:
         return limit_.share(static_cast<double>(&materials_.back() - &material + 1));
     }
     void check(const Material& material, const SpherePicture& picture, int samples) const {
-        requirePossible({.name = "the picture of " + material.brdf->name(),
+        requirePossible({.name = "the picture of " + material.name,
                          .width = picture.size,
                          .radiance = picture.radiance,
                          .samples = samples},
@@ -360,6 +376,13 @@ private:
 };
 
 }  // namespace
+
+std::string shownName(const std::string& spec, const Brdf& brdf) {
+    const bool holdsCoefficients = looksLikeCoefficients(spec) ||
+                                   dynamic_cast<const Reconstruction*>(&brdf) != nullptr ||
+                                   dynamic_cast<const RepresentedBrdf*>(&brdf) != nullptr;
+    return holdsCoefficients ? spec : brdf.name();
+}
 
 std::string kindName(RenderedPicture::Kind kind) {
     switch (kind) {

@@ -3,6 +3,7 @@
 #include <jobs/common/listener.h>
 #include <jobs/common/number_text.h>
 
+#include <hshfit/brdf/brdf.h>
 #include <hshfit/pictures/sphere.h>
 #include <hshfit/rendering/lit_picture.h>
 
@@ -48,6 +49,10 @@ struct RenderOptions {
         return tolerance.value_or(by == By::integration ? alone : IntegrationOptions{}.tolerance);
     }
 };
+
+/// The name of a material beside its picture: the file of coefficients, whose own name is that of
+/// the BRDF that they were made from.
+std::string shownName(const std::string& spec, const Brdf& brdf);
 
 /// One square of the sheet.
 struct RenderedPicture {

@@ -1,5 +1,7 @@
 #include "spheres.h"
 
+#include "render.h"
+
 #include <jobs/common/inputs.h>
 #include <jobs/source/source.h>
 
@@ -26,7 +28,7 @@ SphereSheet render(const std::vector<std::string>& sources, const std::string& o
                 fmt::format("{}: is a transmission, and point lights about the viewer leave a pane "
                             "dark; expected a sky or a picture as light",
                             brdf->name()));
-        const std::string name = brdf->name();
+        const std::string name = shownName(source, *brdf);
         const SpherePicture& picture =
             pictures.emplace_back(renderSphere(*brdf, {.rig = options.rig,
                                                        .size = options.size,

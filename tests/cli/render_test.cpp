@@ -45,6 +45,22 @@ TEST_F(Cli, RenderNamesTheSpheresInTheirOrder) {
     EXPECT_EQ(json["exposure"], Json({{"automatic", false}, {"stops", -1.5}}));
 }
 
+TEST_F(Cli, RenderNamesCoefficientsByTheirFile) {
+    const std::string file = path("c.json"), lobe = "phong:exponent=22", to = " --json -o ";
+    ASSERT_EQ(run("project " + lobe + " --order 3 -o " + file).code, 0);
+    const Answer spheres = run("render " + file + " " + lobe + " --size 8" + to + path("a.png"));
+    ASSERT_EQ(spheres.code, 0) << spheres.err;
+    EXPECT_EQ(Json::parse(spheres.out)["spheres"][0]["brdf"], file);
+    EXPECT_EQ(Json::parse(spheres.out)["spheres"][1]["brdf"], lobe);
+    // Both ways of a file are of its own sum, however poor: a remark says what shows the loss.
+    const std::string lit = "render " + file + " --light uniform --size 8 --samples 1" + to;
+    const Answer both = run(lit + path("b.png"));
+    ASSERT_EQ(both.code, 0) << both.err;
+    for (const Json& picture : Json::parse(both.out)["pictures"]) EXPECT_EQ(picture["brdf"], file);
+    EXPECT_NE(both.err.find("render " + lobe + " " + file), std::string::npos) << both.err;
+    EXPECT_EQ(run(lit + path("c.png") + " --by integration").err, "");
+}
+
 TEST_F(Cli, RenderEndsIntegrationInTimeAndSaysSo) {
     const std::string sky = "render ggx:alpha=.1 --light sky:type=12,elevation=30 --size 48 ";
     expectError(sky + "--by coefficients --seconds 1 -o " + path("t.exr"), 2, "--by integration",
