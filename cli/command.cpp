@@ -1,5 +1,6 @@
 #include "command.h"
 
+#include "code.h"
 #include "command_table.h"
 #include "outputs.h"
 #include "page.h"
@@ -74,6 +75,10 @@ void printText(std::string_view given) {
     const std::string text = printableLines(given);
     const auto width = terminalWidth(isOutputTaken() ? Stream::error : Stream::output);
     writeAnswer(width ? folded(text, *width) : text);
+}
+
+void printCode(std::string_view code) {
+    writeAnswer(printableLines(code));
 }
 
 void printJson(const nlohmann::ordered_json& document) {

@@ -1,3 +1,4 @@
+#include "code.h"
 #include "command.h"
 #include "command_rows.h"
 #include "documents.h"
@@ -107,34 +108,37 @@ std::string text(const jobs::LitSurface& lit, const IrradianceArguments& argumen
     if (arguments.options.order > 3) out += errorText("order 3, as below", 27, lit.nineError);
     out += errorText("zonal order 3", 15, lit.zonalError);
     out += errorText("geomerics order 2", 12, lit.geomericsError);
-    out += " l  m  radiance R, G, B                       irradiance R, G, B\n";
+    // Within the 80 columns of a terminal.
+    out += " l  m  radiance R, G, B                   irradiance R, G, B\n";
     for (int l = 0; l < 3; ++l) {
         for (int m = -l; m <= l; ++m) {
             const auto k = static_cast<std::size_t>(l * (l + 1) + m);
             const Rgb a = withoutRounding(lit.radiance[k], lit.meanIrradiance),
                       b = withoutRounding(lit.irradiance[k], lit.meanIrradiance);
-            out += fmt::format("{:2} {:2} {:13.6g}{:13.6g}{:13.6g} {:13.6g}{:13.6g}{:13.6g}\n", l,
+            out += fmt::format("{:2} {:2} {:12.5g}{:12.5g}{:12.5g} {:12.5g}{:12.5g}{:12.5g}\n", l,
                                m, a[0], a[1], a[2], b[0], b[1], b[2]);
         }
     }
-    for (const Convention* each : lit.conventions) {
-        out += fmt::format(
-            "\n{}: {}\n  signs {}; up {}; {}-handed\n  {}; divided by pi: {}\n"
-            "  constants folded in: {}; {}\n  import of a panorama: {}; turn {:g}, no mirror{}\n{}",
-            each->name, each->engine, each->signs, each->up, each->handedness, each->quantity,
-            each->divided, each->constants, each->order, each->import, each->turn,
-            arguments.options.engine.empty() ? "" : ", applied", engineShader(*each, lit.radiance));
-    }
     return out;
+}
+
+std::string factsOf(const Convention& c, const IrradianceArguments& arguments) {
+    return fmt::format(
+        "\n{}: {}\n  signs {}; up {}; {}-handed\n  {}; divided by pi: {}\n"
+        "  constants folded in: {}; {}\n  import of a panorama: {}; turn {:g}, no mirror{}\n",
+        c.name, c.engine, c.signs, c.up, c.handedness, c.quantity, c.divided, c.constants, c.order,
+        c.import, c.turn, arguments.options.engine.empty() ? "" : ", applied");
 }
 
 void runIrradiance(const IrradianceArguments& arguments, const Globals& globals) {
     const jobs::LitSurface lit = jobs::irradianceOfLight(arguments.specs, arguments.options);
     for (const std::string& remark : lit.remarks) note(globals, remark);
-    if (globals.json)
-        printJson(answer(lit, arguments));
-    else
-        printText(text(lit, arguments));
+    if (globals.json) return printJson(answer(lit, arguments));
+    printText(text(lit, arguments));
+    for (const Convention* each : lit.conventions) {
+        printText(factsOf(*each, arguments));
+        printCode(engineShader(*each, lit.radiance));
+    }
 }
 
 constexpr ArgumentRow irradianceArguments[] = {

@@ -68,6 +68,16 @@ std::size_t explanationColumn(const Page& page, std::size_t first, std::size_t w
     return std::min(column, std::max<std::size_t>(width / 3, 14));
 }
 
+/// The beginning of a command of this program that goes on to the end of the line; npos if there is
+/// none.
+std::size_t commandIn(std::string_view line) {
+    constexpr std::string_view name = "hshfit ", behind = ": hshfit ";
+    const std::size_t first = line.find_first_not_of(' ');
+    if (first != line.npos && line.substr(first).starts_with(name)) return first;
+    const std::size_t colon = line.find(behind);
+    return colon == line.npos ? line.npos : colon + behind.size() - name.size();
+}
+
 }  // namespace
 
 void addHeading(Page& page, std::string text) {
@@ -106,8 +116,10 @@ std::string folded(std::string_view text, std::size_t width) {
         std::string rest(line);
         while (columnsOf(rest) > width) {
             const std::size_t from = rest.find_first_not_of(' ');
+            // A command that is copied from a terminal has to be one line.
+            const std::size_t whole = commandIn(rest);
             std::size_t at = std::string::npos;
-            for (std::size_t k = rest.find(' ', from); k != std::string::npos;
+            for (std::size_t k = rest.find(' ', from); k != std::string::npos && k < whole;
                  k = rest.find(' ', k + 1)) {
                 if (at != std::string::npos && columnsOf(rest.substr(0, k)) > width) break;
                 at = k;

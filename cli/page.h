@@ -38,7 +38,8 @@ std::string wrapped(std::string_view text, std::size_t width, std::size_t indent
                     std::size_t start);
 
 /// Lines longer than `width` columns broken at spaces; what follows is indented by four more.
-/// Spaces within a line stay, so that columns do. A word that is longer stays whole.
+/// Spaces within a line stay, so that columns do. A word that is longer stays whole, and so does a
+/// command of this program to the end of its line, which would be cut where it is copied.
 std::string folded(std::string_view text, std::size_t width);
 
 /// Characters of a UTF-8 text, each taken to be one column wide.

@@ -149,6 +149,19 @@ TEST_F(Help, ResultsAreFoldedOnTerminalsOnly) {
         if (line.ends_with('\r')) line.pop_back();
         EXPECT_LE(columnsOf(line), 60U) << line;
     }
+    // Code is copied from a terminal: a remark that is broken would become code.
+    const std::string code = onTerminal("NO_COLOR=1", "irradiance uniform --convention three");
+    EXPECT_NE(code.find("from nine coefficients of radiance: the\r\n// numbers of a LightProbe, "),
+              std::string::npos)
+        << code;
+    EXPECT_NE(code.find("errors against direct integration\r\n    at 2000"), std::string::npos);
+    // So is a command: lines of a shell end where they are broken.
+    const std::string choice =
+        onTerminal("NO_COLOR=1", "choose lambert --kinds gltf --for gltf -o " + path("choice"));
+    EXPECT_NE(
+        choice.find("\r\n  hshfit export lambert --target gltf --name lambert -o lambert\r\n"),
+        std::string::npos)
+        << choice;
     // JSON is for programs: a line stays whole.
     const std::string json = onTerminal("NO_COLOR=1", "info ggx:alpha=.3 --json");
     EXPECT_NE(json.find("\n"), std::string::npos);
