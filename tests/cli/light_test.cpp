@@ -191,6 +191,26 @@ TEST_F(Lights, SharedMapsAreLightsAndTablesAreNot) {
     EXPECT_EQ(info(path("x.exr"))["kind"], "brdf");
 }
 
+/// A square picture may be a probe as well as a table. A table of hshfit says that it is one.
+TEST_F(Lights, PicturesThatDoNotSayWhatTheyHoldAreSaidToBeTakenAsTables) {
+    const std::string picture = path("probe.exr"), table = path("table.exr");
+    ASSERT_EQ(run("render lambert --light uniform --by integration --size 8 -o " + picture).code,
+              0);
+    ASSERT_EQ(run("convert lambert " + table + " --to slices:size=8").code, 0);
+    const Json taken = info(picture);
+    EXPECT_EQ(taken["kind"], "brdf");
+    EXPECT_NE(taken["facts"].value("taken_as", "").find("FILE:layout=angular"), std::string::npos);
+    EXPECT_FALSE(info(table)["facts"].contains("taken_as"));
+    EXPECT_EQ(info(picture + ":layout=angular")["kind"], "light");
+}
+
+TEST_F(Lights, ConventionsStateTheirHandInOneWord) {
+    const Answer answer = run("irradiance uniform --convention all --json");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    for (const Json& each : Json::parse(answer.out)["conventions"])
+        EXPECT_TRUE(each["handedness"] == "left" || each["handedness"] == "right") << each["name"];
+}
+
 TEST_F(Lights, TheListHasEveryKindAndKeepsItsSchema) {
     const Answer answer = run("list lights --json");
     EXPECT_TRUE(keepsSchema(answer.out, "list"));

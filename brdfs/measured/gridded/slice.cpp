@@ -240,6 +240,10 @@ std::vector<Fact> SliceBrdf::facts() const {
          single ? fmt::format("only {} degrees; continued constantly", layout_.phi.front())
                 : fmt::format("{} values of 0 to {} degrees", layout_.phi.size(), layout_.period)},
     };
+    if (!layout_.stated)
+        facts.emplace_back("taken_as",
+                           "slices of a BRDF, since nothing in the file says what it holds; for "
+                           "the light of a picture state a layout: FILE:layout=angular");
     // Slices are square, or nearly so; pictures of surroundings are twice as wide as high.
     if (single && layout_.halfCount == 2 * layout_.differenceCount) {
         facts.emplace_back("looks_like", "a lat-long environment map, which is no BRDF");

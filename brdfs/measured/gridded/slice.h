@@ -20,6 +20,7 @@ struct SliceLayout {
     double shift = 0.5;       ///< 0: a value holds at the start of its bin
     std::vector<double> phi;  ///< phi_d in degrees, ascending, from 0 to below `period`
     double period = 180;      ///< 180, or 360 without reciprocity
+    bool stated = true;       ///< whether the file says that it holds slices
 
     double thetaHalf(double i) const;        ///< radians
     double thetaDifference(double i) const;  ///< radians

@@ -166,9 +166,12 @@ std::unique_ptr<SliceBrdf> readSlicePicture(std::span<const unsigned char> bytes
         throw InputError(name + ": holds coefficients, not slices of a BRDF");
     }
     const ExrPicture picture = readExrPicture(textOf(bytes), name, mostValues);
-    SliceLayout layout{.halfCount = picture.width, .differenceCount = picture.height, .phi = {90}};
+    SliceLayout layout{.halfCount = picture.width,
+                       .differenceCount = picture.height,
+                       .phi = {90},
+                       .stated = picture.attributes.contains("hshfit:slices")};
     std::vector<double> phi = layout.phi;
-    if (picture.attributes.contains("hshfit:slices")) {
+    if (layout.stated) {
         const std::string version = attributeOf(picture, "hshfit:slices", name);
         const std::string columns = attributeOf(picture, "hshfit:theta_half", name);
         const std::string period = attributeOf(picture, "hshfit:phi_period", name);

@@ -253,8 +253,10 @@ const Convention table[] = {
     {.name = "gltf",
      .engine = "glTF EXT_lights_image_based irradianceCoefficients",
      .signs = minus,
-     .up = "+y; axes of the cube map: (x, y, z) = (-x, z, -y) of ours",
-     .handedness = "left; a normal (x, y, z) of glTF is (-x, y, z) there",
+     .up =
+         "+y; axes of the cube map: (x, y, z) = (-x, z, -y) of ours; a normal (x, y, z) of glTF is "
+         "(-x, y, z) there",
+     .handedness = "left",
      .quantity = "convolved",
      .divided = "no",
      .constants = "no",

@@ -49,8 +49,10 @@ void addLine(std::string_view line, const std::string& name, std::vector<double>
         double value = 0;
         const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), value);
         if (error != std::errc() || !std::isfinite(value))
-            throw InputError(fmt::format("{}: '{}' is no number", name,
-                                         printable(std::string(line.substr(0, 20)))));
+            throw InputError(
+                fmt::format("{}: '{}' is no number; a file of nine coefficients has "
+                            "the numbers of R, G and B and remarks alone",
+                            name, printable(std::string(line.substr(0, 20)))));
         numbers.push_back(value);
         if (numbers.size() > mostNumbers)
             throw InputError(

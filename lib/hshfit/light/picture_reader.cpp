@@ -189,6 +189,18 @@ ChannelGroup chosenGroup(const PictureFile& file, const PictureOptions& options)
     return groups.front();
 }
 
+/// The layouts that a picture of this size may have, ready to be typed; all of them with their
+/// sizes where none fits.
+std::string layoutsFor(const std::string& path, std::size_t width, std::size_t height) {
+    std::vector<std::string> fitting, all;
+    for (const LayoutName& row : layoutNames()) {
+        all.push_back(fmt::format("{} {}", row.name, layoutSizes(row.layout)));
+        if (layoutFits(row.layout, width, height))
+            fitting.push_back(fmt::format("{}:layout={}", path, row.name));
+    }
+    return fmt::format("{}", fmt::join(fitting.empty() ? all : fitting, ", "));
+}
+
 }  // namespace
 
 // --- one file -------------------------------------------------------------------------------
@@ -308,12 +320,8 @@ PictureReader::PictureReader(const std::string& path, const PictureOptions& opti
     }
     const auto layout = options.layout ? options.layout : layoutOfSize(width, height);
     if (!layout) {
-        std::vector<std::string> known;
-        for (const LayoutName& row : layoutNames()) {
-            known.push_back(fmt::format("{} {}", row.name, layoutSizes(row.layout)));
-        }
         throw InputError(fmt::format("{}: {} x {} pixels do not tell a layout; state one: {}", path,
-                                     width, height, fmt::join(known, ", ")));
+                                     width, height, layoutsFor(path, width, height)));
     }
     // A panorama whose layout is stated may have any proportion: pixels are as wide and as high as
     // they follow from its size.
@@ -327,7 +335,8 @@ PictureReader::PictureReader(const std::string& path, const PictureOptions& opti
         std::ranges::any_of(files_, [](const auto& f) { return f->picture().wholeNumbers(); });
     if (whole && !options.curve) {
         throw InputError(
-            fmt::format("{}: its {} values are codes; state their curve, such as srgb or linear",
+            fmt::format("{0}: its {1} values are codes; state their curve, srgb for most pictures: "
+                        "{0}:curve=srgb",
                         path, first.picture().number()));
     }
     if (!whole && options.curve.value_or(TransferCurve::linear) != TransferCurve::linear) {

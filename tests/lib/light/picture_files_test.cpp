@@ -379,6 +379,9 @@ TEST_F(PictureFiles, SizesCurvesAndChannelsThatDoNotFitAreRefused) {
     };
     const std::string square = write("s.exr", 16, 16, pattern(3 * 256));
     has(square, "do not tell a layout");
+    // The layouts of squares alone, as they are typed.
+    has(square, "state one: " + square + ":layout=angular, " + square + ":layout=mirror-ball, ");
+    EXPECT_EQ(messageOf(square).find("layout=cross"), std::string::npos);
     // A stated panorama may have any proportion.
     EXPECT_EQ(messageOf(square + ":layout=latlong"), "no input error");
     has(square + ":layout=cross", "4 : 3 or 3 : 4");
@@ -386,7 +389,7 @@ TEST_F(PictureFiles, SizesCurvesAndChannelsThatDoNotFitAreRefused) {
     has(write("w.exr", 32, 16, pattern(3 * 512)) + ":layout=angular", "as wide as high");
     has(write("o.exr", 33, 16, pattern(3 * 33 * 16)), "do not tell a layout");
     has(square + ":layout=angular,curve=srgb", "are linear");
-    has(write("l.png", 16, 8, pattern(384), OIIO::TypeDesc::UINT8), "state their curve");
+    has(write("l.png", 16, 8, pattern(384), OIIO::TypeDesc::UINT8), "l.png:curve=srgb");
     has(write("x.exr", 16, 8, pattern(384), OIIO::TypeDesc::FLOAT,
               [](auto& spec) {
                   spec.channelnames = {"X", "Y", "Z"};
