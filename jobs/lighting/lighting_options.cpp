@@ -45,10 +45,10 @@ constexpr OptionRow tradeRows[] = {
               "Measure, in place of forms, the models of lighting of hshfit export: all, or of "
               "coefficients, split-sum, ltc and prefiltered those named"}
         .takes({lightingWords, Syntax::list}),
-    OptionRow{
-        "light", at<&LightingTradeOptions::errors, &LightingErrorOptions::lights>,
-        "With --lighting, a light; repeated (default: an example of every kind without a file)"}
-        .takes({.syntax = Syntax::light, .files = Files::read, .dash = ""}),
+    OptionRow{"light", at<&LightingTradeOptions::errors, &LightingErrorOptions::lights>,
+              "A light; repeated (default: an example of every kind without a file)"}
+        .takes({.syntax = Syntax::light, .files = Files::read, .dash = ""})
+        .with("lighting"),
 };
 
 }  // namespace

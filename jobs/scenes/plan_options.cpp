@@ -24,7 +24,7 @@ constexpr OptionRow planRows[] = {
     OptionRow{
         "seconds", at<&PlanOptions::seconds>,
         "End the searches after that time; a material whose search has not ended takes a large "
-        "halfway form"}
+        "halfway form; that form, the checks of all and --lighting come on top"}
         .within(bounds::seconds),
     cacheRow(at<&PlanOptions::folder, &tradeoff::ProjectionFolder::path>),
 };

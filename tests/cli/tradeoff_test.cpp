@@ -203,6 +203,7 @@ TEST_F(TradeoffCommand, RefusesWhatItCannotDo) {
     write("angles.csv", "wi_x,wi_y,wi_z,wo_x,wo_y,wo_z\n30,0,0,0,0,1\n");
     write("short.csv", "wi_x,wi_y,wi_z,wo_x,wo_y\n0,0,1,0,0\n");
     expectError("tradeoff lambert", 2, "-o DIR", 2);
+    expectError("tradeoff lambert --json --light uniform", 2, "--light requires --lighting", 2);
     expectError("tradeoff lambert --json --metric nice", 2, "unknown metric", 2);
     expectError("tradeoff lambert --json --forms neural", 2, "outgoing, basis, halfway", 2);
     expectError("tradeoff lambert --json --no-timing --by-time", 2, "--by-time", 2);
