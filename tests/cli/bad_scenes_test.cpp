@@ -104,6 +104,9 @@ TEST_F(BadScenes, WithBadPlacesAreRefused) {
     Json other = floor("square");
     other["objects"][0]["material"] = "gold";
     refuses(other, {"'objects[0].material' is 'gold'; valid: grey"});
+    // Coefficients of light have keys of their own; the kind of file is the mistake.
+    refuses({{"format", "hshfit-light"}, {"basis", "sh"}}, {"'format' is 'hshfit-light'; valid: "
+                                                            "hshfit-scene"});
     Json unknown = floor("square");
     unknown["materials"][0]["brdf"] = "absent.binary";
     refuses(unknown, {"absent.binary"});

@@ -132,9 +132,12 @@ Scene readScene(const std::string& path, Purpose purpose) {
     const nlohmann::json json =
         parseJson({reinterpret_cast<const char*>(file.data()), file.size()}, path, deepest);
     const JsonFields root(json, "", path);
+    // Before the keys, which those of another kind of file are not.
+    if (root.has("format") && root.word("format") != "hshfit-scene")
+        failWord(root, "format", {"hshfit-scene"});
     onlyKeys(root, {"format", "version", "about", "materials", "lights", "objects", "cameras",
                     "views", "budget", "limits"});
-    if (root.word("format") != "hshfit-scene") failWord(root, "format", {"hshfit-scene"});
+    root.word("format");
     root.integer("version", 1, 1);
     if (root.has("about")) root.word("about");
     Scene scene{.file = path};
