@@ -43,8 +43,10 @@ double playcanvasLevel(double r, std::size_t levels) {
     return std::max((last(levels) - 0.5) * r, 11 * r - 11 + last(levels));
 }
 constexpr std::array prefilterTable{
-    Prefilter{"three", "three.js: six levels, as of a face of 256 texels", 6, quadraticLevel,
-              "{0} * r * (2.0 - r)"},
+    Prefilter{"three", "three.js on a panorama 1024 wide: six levels, faces of 256 texels", 6,
+              quadraticLevel, "{0} * r * (2.0 - r)"},
+    Prefilter{"three-512", "three.js on a panorama 2048 wide: seven levels, faces of 512 texels", 7,
+              quadraticLevel, "{0} * r * (2.0 - r)"},
     Prefilter{"filament", "Filament: five levels, as cmgen writes them", 5, quadraticLevel,
               "{0} * r * (2.0 - r)"},
     Prefilter{"unity", "Unity: seven levels of a reflection probe", 7, unityLevel,

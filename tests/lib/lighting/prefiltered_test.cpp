@@ -76,6 +76,7 @@ TEST(Prefilters, BandsAreThoseOfTheFormula) {
 TEST(Prefilters, LevelsAreThoseOfTheEngines) {
     // By the engines' formulas, worked by hand.
     EXPECT_NEAR(prefilterNamed("three").levelOf(0.5), 5 * 0.75, 1e-12);
+    EXPECT_NEAR(prefilterNamed("three-512").levelOf(0.5), 6 * 0.75, 1e-12);
     EXPECT_NEAR(prefilterNamed("filament").levelOf(0.5), 4 * 0.75, 1e-12);
     EXPECT_NEAR(prefilterNamed("unity").levelOf(0.5), 6 * 0.5 * 1.35, 1e-12);
     // alpha = 2^(level / 0.8) / 128: level 4 has alpha 1/4; roughness 1 is the irradiance, level 6.
@@ -147,6 +148,22 @@ TEST(PrefilteredLobes, AnEnginesOwnLobeIsFound) {
     const std::size_t k = ElevationRows{.count = 16}.place(std::cos(radians(40))).row;
     const double theta = std::acos(ElevationRows{.count = 16}.cosine(k));
     EXPECT_NEAR(table.table.row(k)[8], theta, radians(1.5));
+}
+
+/// A level of seven lies between two of six, whose mixture has another shape.
+TEST(PrefilteredLobes, AsManyLevelsAsTheEngineHas) {
+    const double roughness = prefilterNamed("three-512").roughnessOf(3);
+    const test::FormulaBrdf brdf = ggxLike(roughness, 0, 0.5 / moment(roughness, 0));
+    const auto errorSeenAlongTheNormal = [&](const char* engine) {
+        const PrefilteredTable table =
+            fitPrefiltered(brdf, prefilterNamed(engine), 1, {.count = 4});
+        const auto sum = [](const std::vector<double>& squares) {
+            return std::accumulate(squares.begin(), squares.begin() + PrefilteredTable::bands, 0.0);
+        };
+        return std::sqrt(sum(table.left) / sum(table.squares));
+    };
+    EXPECT_LT(errorSeenAlongTheNormal("three-512"), 0.01);
+    EXPECT_GT(errorSeenAlongTheNormal("three"), 0.05);
 }
 
 TEST(PrefilteredLobes, UniformLightReflectsTheAlbedo) {
