@@ -55,6 +55,7 @@ std::string textOf(const jobs::Transferred& done) {
             "of the mean at ({}, {})\n",
             picture.camera, picture.light, percent(error.relativeL2, 2), percent(picture.noise, 2),
             percent(error.maximum, 2), error.column, error.row);
+        for (const std::string& file : picture.files) text += fmt::format("    {}\n", file);
     }
     if (done.resumed > 0)
         text += fmt::format("  {} vertices of an earlier run were taken\n", done.resumed);

@@ -3,6 +3,8 @@
 #include <cli/program.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+
 namespace hshfit::test {
 namespace {
 
@@ -22,6 +24,19 @@ TEST_F(Cli, LtcWritesEveryForm) {
     const Json table = Json::parse(read(path("t.json")));
     EXPECT_EQ(table["summary"]["mean_error"], json["mean_error"]);
     EXPECT_EQ(table["values"][3], 1);
+}
+
+TEST_F(Cli, LtcStatesTheLargestShareBesideTheMean) {
+    const Answer answer = run("ltc ggx --size 3 -o " + path("t.json"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    const Json table = Json::parse(read(path("t.json")));
+    double largest = 0;
+    for (const Json& row : table["misplaced"])
+        for (const double share : row) largest = std::max(largest, share);
+    const std::string words = "% of the light misplaced, at most ";
+    const std::size_t at = answer.out.find(words);
+    ASSERT_NE(at, std::string::npos) << answer.out;
+    EXPECT_NEAR(std::stod(answer.out.substr(at + words.size())), 100 * largest, 0.05001);
 }
 
 TEST_F(Cli, LtcNamesWhatIsWrong) {

@@ -159,7 +159,10 @@ TEST_F(Transfer, ResumedAfterKillsWritesTheSameFiles) {
     const std::string options =
         "--rays 400 --order 3 --local-order 3 --passes 2 --edge .1 --clusters 8,16 --components 8 "
         "--reference-samples 64 ";
-    ASSERT_EQ(transferred(corner(), options).code, 0);
+    const Answer unstopped = transferred(corner(), options);
+    ASSERT_EQ(unstopped.code, 0) << unstopped.err;
+    EXPECT_NE(unstopped.out.find("out/eye_scene_transfer.png\n"), std::string::npos)
+        << unstopped.out;
     const std::string whole = path("whole"), out = path("out");
     std::filesystem::rename(out, whole);
     std::vector<std::string> words{"transfer", path("scene.json"), "-o",
