@@ -4,6 +4,7 @@
 #include "job_options.h"
 
 #include <hshfit/error.h>
+#include <hshfit/files/extension.h>
 #include <hshfit/material_library/library_file.h>
 #include <hshfit/pages/picture_error_json.h>
 #include <hshfit/pictures/poor.h>
@@ -370,6 +371,18 @@ void requireOptions(const CLI::App& command, std::string_view action, unsigned k
                                  own.empty() ? own : "; it takes" + own));
 }
 
+/// Throws UsageError where a library would get the extension of another format.
+void requireLibraryName(const std::string& output, const Action& action) {
+    constexpr std::string_view others[] = {".json", ".exr", ".csv", ".html", ".png"};
+    const bool writesLibrary = action.output == Action::Output::required &&
+                               action.run != runExport && action.run != runMap;
+    const std::string extension = extensionOf(output);
+    if (!writesLibrary || std::ranges::find(others, extension) == std::end(others)) return;
+    throw UsageError(
+        fmt::format("'{}': library {} writes a file of its own form; name it '{}.library'", output,
+                    action.name, output.substr(0, output.size() - extension.size())));
+}
+
 /// Throws UsageError for what this action does not take.
 void check(const CLI::App& command, const LibraryArguments& arguments, const Action& action) {
     const std::size_t count = arguments.inputs.size();
@@ -381,6 +394,7 @@ void check(const CLI::App& command, const LibraryArguments& arguments, const Act
         throw UsageError(fmt::format("library {} needs -o FILE", action.name));
     if (!arguments.output.empty() && action.output == none)
         throw UsageError(fmt::format("library {} writes no file; leave out -o", action.name));
+    requireLibraryName(arguments.output, action);
     requireOptions(command, action.name, action.kind);
     if (command.count("--add-to") > 0)
         requireOptions(command, "learn with --add-to (its library states the others)", of::add);

@@ -103,6 +103,26 @@ void refuseTwice(const CLI::App& command) {
     }
 }
 
+/// Throws OutputError, before the work, for a file in a folder that is not there.
+void requireFolders(const CLI::App& command) {
+    for (const CLI::Option* option : command.get_options()) {
+        const Values* row = findValues(command, *option);
+        if (!row || row->files != Files::written || !isOutput(command, *option)) continue;
+        for (const std::string& path : option->results()) {
+            // Several results go to a new folder, "out/".
+            const std::string named = path.substr(0, path.find_last_not_of('/') + 1);
+            const auto folder = std::filesystem::path(named).parent_path();
+            std::error_code error;
+            if (isStandardOutput(path) || folder.empty() ||
+                std::filesystem::status(folder, error).type() !=
+                    std::filesystem::file_type::not_found)
+                continue;
+            throw OutputError(
+                fmt::format("cannot write '{}': there is no folder '{}'", path, folder.string()));
+        }
+    }
+}
+
 bool writesFiles(const CLI::App& command) {
     return std::ranges::any_of(command.get_options(), [&](const CLI::Option* option) {
         return option->get_name() == "OUT" || isOutput(command, *option);
@@ -169,6 +189,7 @@ bool areOutputsKept(const CLI::App& command, Globals& globals) {
     // A batch keeps its results by a rule of its own.
     if (command.get_name() == "batch" || !writesFiles(command)) return false;
     refuseTwice(command);
+    requireFolders(command);
     const CLI::Option* force = command.get_option_no_throw("--force");
     OutputRule rule{.replace = force && force->count() > 0, .command = command.get_name()};
     setOutputRule(rule);

@@ -27,7 +27,14 @@ CLI::Validator within(const jobs::Bounds<Number>& bounds) {
         const bool in = CLI::detail::lexical_cast(given, number) &&
                         number >= static_cast<Given>(bounds.least) &&
                         number <= static_cast<Given>(bounds.most);
-        return in ? std::string() : fmt::format("'{}' is not within {} to {}", given, least, most);
+        if (in) return std::string();
+        double written = 0;
+        const bool fraction = std::is_integral_v<Given> &&
+                              CLI::detail::lexical_cast(given, written) &&
+                              written >= static_cast<double>(bounds.least) &&
+                              written <= static_cast<double>(bounds.most);
+        return fmt::format("'{}' is no{} within {} to {}", given,
+                           fraction ? " whole number in digits alone" : "t", least, most);
     };
     return {check, fmt::format("in [{} - {}]", least, most)};
 }

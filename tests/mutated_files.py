@@ -65,7 +65,7 @@ COMMANDS = {"pairs": ["eval lambert --pairs {path} -o {out}.csv"],
             "sky_tables": ["light hosek-wilkie:data={path},elevation=30 -o {out}.json --order 3"],
             "material_library": ["info {path}:b --json", "library list {path}",
                                  "library list {path} --json", "eval {path}:a --wi 30,0 --wo 45,10",
-                                 "library decode {path}:a -o {out}.json",
+                                 "library decode {path}:a -o {out}.library",
                                  "library search {path} lambert",
                                  "library map {path} -o {out}.html"]}
 # Readers of Mueller matrices, and elements beside the default.

@@ -9,8 +9,11 @@
 #include <libfccp/csv.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <fstream>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -20,11 +23,12 @@ namespace {
 using io::double_quote_escape;
 using io::trim_chars;
 
-double numberIn(std::string_view cell, const std::string& where) {
+double numberIn(std::string_view cell, const std::string& where, const char* column) {
     double value = 0;
     const auto read = std::from_chars(cell.data(), cell.data() + cell.size(), value);
     if (read.ec != std::errc() || read.ptr != cell.data() + cell.size() || !std::isfinite(value)) {
-        throw InputError(fmt::format("{}: '{}' is not a finite number", where, cell));
+        throw InputError(
+            fmt::format("{}, column {}: '{}' is not a finite number", where, column, cell));
     }
     return value;
 }
@@ -32,19 +36,34 @@ double numberIn(std::string_view cell, const std::string& where) {
 constexpr const char* vectorColumns[] = {"wi_x", "wi_y", "wi_z", "wo_x", "wo_y", "wo_z"};
 constexpr const char* angleColumns[] = {"theta_i", "phi_i", "theta_o", "phi_o"};
 
+/// A remark on a first line with semicolons, as tables of spreadsheets have them where the decimal
+/// sign is a comma.
+std::string separatorRemark(const std::string& path) {
+    std::array<char, 512> start{};
+    std::ifstream file(path, std::ios::binary);
+    file.exceptions(std::ios::badbit);
+    file.read(start.data(), start.size());
+    const std::string_view read(start.data(), static_cast<std::size_t>(file.gcount()));
+    return read.substr(0, read.find('\n')).find(';') == std::string_view::npos
+               ? ""
+               : "; its first line has semicolons, and columns are separated by commas here";
+}
+
 template <std::size_t count, class Has>
 void requireColumns(const std::string& path, const char* const (&names)[count], const Has& has) {
     for (const char* name : names) {
         if (has(name)) continue;
-        throw InputError(fmt::format("{}: there is no column {} ({} are read, or {} in degrees)",
+        throw InputError(fmt::format("{}: there is no column {} ({} are read, or {} in degrees){}",
                                      path, name, fmt::join(vectorColumns, ", "),
-                                     fmt::join(angleColumns, ", ")));
+                                     fmt::join(angleColumns, ", "), separatorRemark(path)));
     }
 }
 
-/// A direction from the texts of its angles.
-Direction directionOf(std::string_view theta, std::string_view phi, const std::string& where) {
-    const Angles angles{numberIn(theta, where), numberIn(phi, where)};
+/// A direction from the texts of its angles, those of two columns from `first` on.
+Direction directionOf(const std::array<std::string, 4>& cells, std::size_t first,
+                      const std::string& where) {
+    const Angles angles{numberIn(cells[first], where, angleColumns[first]),
+                        numberIn(cells[first + 1], where, angleColumns[first + 1])};
     if (!(angles.theta >= 0 && angles.theta <= 180))
         throw InputError(fmt::format("{}: the polar angle {} is not from 0 to 180 degrees", where,
                                      angles.theta));
@@ -52,15 +71,16 @@ Direction directionOf(std::string_view theta, std::string_view phi, const std::s
 }
 
 void takeAngles(const std::array<std::string, 4>& polar, const std::string& where, PairRow& row) {
-    row.wi = directionOf(polar[0], polar[1], where);
-    row.wo = directionOf(polar[2], polar[3], where);
+    row.wi = directionOf(polar, 0, where);
+    row.wo = directionOf(polar, 2, where);
     const double v[] = {row.wi.x, row.wi.y, row.wi.z, row.wo.x, row.wo.y, row.wo.z};
     for (std::size_t k = 0; k < row.cells.size(); ++k) row.cells[k] = fmt::format("{}", v[k]);
 }
 
 void takeVectors(const std::string& where, PairRow& row) {
     std::array<double, 6> v{};
-    for (std::size_t k = 0; k < v.size(); ++k) v[k] = numberIn(row.cells[k], where);
+    for (std::size_t k = 0; k < v.size(); ++k)
+        v[k] = numberIn(row.cells[k], where, vectorColumns[k]);
     row.wi = unitDirection({v[0], v[1], v[2]}, [&] { return where; });
     row.wo = unitDirection({v[3], v[4], v[5]}, [&] { return where; });
 }
@@ -82,7 +102,9 @@ Direction unitDirection(const Direction& d, const std::function<std::string()>& 
 
 void readPairs(const std::string& path, const std::function<void(const PairRow&)>& take) {
     try {
-        io::CSVReader<11, trim_chars<' ', '\t'>, double_quote_escape<',', '"'>> reader(path);
+        io::CSVReader<11, trim_chars<' ', '\t'>, double_quote_escape<',', '"'>,
+                      io::throw_on_overflow, io::empty_line_comment>
+            reader(path);
         reader.read_header(io::ignore_extra_column | io::ignore_missing_column, "wi_x", "wi_y",
                            "wi_z", "wo_x", "wo_y", "wo_z", "theta_i", "phi_i", "theta_o", "phi_o",
                            "weight");
@@ -103,7 +125,7 @@ void readPairs(const std::string& path, const std::function<void(const PairRow&)
                 takeAngles(polar, where, row);
             else
                 takeVectors(where, row);
-            if (has("weight")) row.weight = numberIn(weight, where);
+            if (has("weight")) row.weight = numberIn(weight, where, "weight");
             take(row);
         }
     } catch (const io::error::can_not_open_file&) {

@@ -1,6 +1,7 @@
 #include "gaussians.h"
 
 #include <jobs/common/enum_words.h>
+#include <jobs/common/json_output.h>
 #include <jobs/common/metric_json.h>
 #include <jobs/common/option_words.h>
 #include <jobs/common/shared_options.h>
@@ -89,6 +90,7 @@ OptionRows<GaussianOptions> gaussianOptions() {
 
 FittedGaussians fitGaussians(const std::string& spec, const std::string& output,
                              const GaussianOptions& options, const Listener& listener) {
+    requireJsonName(output, "mixtures of Gaussians");
     constexpr std::array<std::string_view, 2> weights{"cosine", "none"};
     if (std::ranges::find(weights, options.weight) == weights.end())
         throw spelling::unknown("weight", options.weight, weights);

@@ -1,5 +1,6 @@
 #include "light.h"
 
+#include <jobs/common/json_output.h>
 #include <jobs/common/nine_numbers.h>
 
 #include <hshfit/bases/catalog.h>
@@ -158,6 +159,7 @@ nlohmann::ordered_json splitJson(const SplitLight& split) {
 
 ProjectedLight light(const std::vector<std::string>& specs, const std::string& output,
                      const LightOptions& options) {
+    requireJsonName(output, "coefficients of light");
     const auto basis =
         bases::make(options.basis, options.order, {.condonShortley = options.condonShortley});
     const LightSpecification specification{.text = fmt::format("{}", fmt::join(specs, " + ")),

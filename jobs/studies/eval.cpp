@@ -89,6 +89,17 @@ bool isZero(const std::vector<double>& values) {
     return std::ranges::all_of(values, [](double value) { return value == 0; });
 }
 
+/// Pairs below the surface are more likely angles from the surface, or columns that are exchanged,
+/// than meant.
+void remarkBelow(std::size_t below, std::size_t pairs, bool through, const EvalOptions& options,
+                 const Listener& listener) {
+    if (below == 0) return;
+    listener.say(
+        fmt::format("{}: {} of {} pairs have {} below the surface, where f is 0; polar angles are "
+                    "from the normal, 0 to 90 degrees",
+                    options.pairs, below, pairs, through ? "wi" : "a direction"));
+}
+
 void remark(const Brdf& brdf, const Listener& listener) {
     if (const std::string why = whyZero(brdf); !why.empty()) listener.say(why);
 }
@@ -236,8 +247,10 @@ EvaluatedPairs evaluatePairs(const std::string& source, const std::string& outpu
     const auto columns = columnsOf(brdf->channels());
     std::string& csv = result.csv;
     csv = fmt::format("wi_x,wi_y,wi_z,wo_x,wo_y,wo_z,{}\n", fmt::join(columns, ","));
+    std::size_t below = 0;
     readPairs(options.pairs, [&](const PairRow& row) {
         ++result.count;
+        if (row.wi.z < 0 || (!through && row.wo.z < 0)) ++below;
         const Direction wo = outgoingFor(through, row.wo, [&] {
             return fmt::format("{}: pair {}: wo_z = {}", options.pairs, result.count, row.cells[5]);
         });
@@ -251,6 +264,7 @@ EvaluatedPairs evaluatePairs(const std::string& source, const std::string& outpu
         csv += "\n";
     });
     brdf->checkIntact();
+    remarkBelow(below, result.count, through, options, listener);
     if (isZero(result.facts.values)) remark(*brdf, listener);
     if (!output.empty()) writeFile(output, csv);
     return result;

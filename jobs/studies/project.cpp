@@ -10,6 +10,7 @@
 #include <hshfit/bases/catalog.h>
 #include <hshfit/brdf/transmission.h>
 #include <hshfit/coefficient_files/coefficient_file.h>
+#include <hshfit/coefficient_files/coefficient_path.h>
 #include <hshfit/coefficient_files/representation_file.h>
 #include <hshfit/coefficients/reconstruction.h>
 #include <hshfit/error.h>
@@ -175,6 +176,7 @@ void requireFile(const std::string& spec, const std::string& output) {
 Projected project(const std::string& spec, const std::string& output, const ProjectOptions& options,
                   const Listener& listener) {
     requireFile(spec, output);
+    requireCoefficientPath(output);
     const Projector projector(options);
     Projected result = projector.run(spec, output, listener.part("project"));
     writeProjected(result, output);

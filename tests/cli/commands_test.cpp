@@ -60,8 +60,13 @@ TEST_F(Cli, UsageErrorsNameWhatIsValid) {
     expectError("project lambert --tolerance high -o " + path("x.json"), 2, "high", 0);
     expectError("export lambert --basis hsh --order 2.5 -o " + path("x"), 2,
                 "--order '2.5': give a whole number; see", 0);
-    expectError("project lambert --order 2.5 -o " + path("x.json"), 2, "'2.5' is not within 1 to",
+    expectError("project lambert --order 2.5 -o " + path("x.json"), 2,
+                "'2.5' is no whole number in digits alone within 1 to", 0);
+    expectError("light uniform --order 1e1 -o " + path("x.json"), 2, "no whole number", 0);
+    expectError("light uniform --order 1001 -o " + path("x.json"), 2, "'1001' is not within 1 to",
                 0);
+    expectError("info ggx:alpha=0,3", 2, "a number has a point: alpha=0.3", 0);
+    expectError("info lambert:kd=.2/.3/.4,5", 2, "a number has a point", 0);
     expectError("project lambert -o", 2, "--output: a value is missing; see", 0);
     expectError("info lambert -q", 2, "unexpected '-q'; see hshfit help info", 0);
     expectError("-x", 2, "no command is given", 0);
@@ -78,6 +83,27 @@ TEST_F(Cli, UsageErrorsNameWhatIsValid) {
     expectError("project ward:ax=.1,ay=.2 -o " + path("x.json") + " --outgoing 8", 2, "anisotropic",
                 0);
     expectError("compare lambert lambert --metrics nope", 2, "relative-l2", 0);
+}
+
+/// A document of JSON has no name of another format, and a folder that is not there is found before
+/// the work: here before the input, which is not there either.
+TEST_F(Cli, NamesOfOutputsAreCheckedBeforeTheWork) {
+    expectError("light uniform -o " + path("sky.exr"), 2, "are written as .json", 0);
+    expectError("gaussians ggx:alpha=.3 -o " + path("g.EXR"), 2, "are written as .json", 0);
+    EXPECT_EQ(run("light uniform --order 1 -o " + path("sky.JSON")).code, 0);
+    fs::remove(path("sky.JSON"));
+    expectError("project " + path("none.binary") + " -o " + path("x.foo"), 2, ".json (exact)", 0);
+    expectError("library learn lambert -o " + path("a.json"), 2, "a.library'", 0);
+    for (const std::string command : {"project", "light", "gaussians", "library learn"})
+        expectError(command + " " + path("none.binary") + " -o " + path("absent/x.json"), 5,
+                    "absent/x.json': there is no folder '" + path("absent") + "'", 0);
+    // Of several results, the folder is made.
+    EXPECT_EQ(run("project lambert lambert:kd=.5 --order 1 -o " + path("new/")).code, 0);
+    fs::remove_all(path("new"));
+    expectError("convert " + path("none.binary") + " " + path("absent/x.bsdf"), 5,
+                "there is no folder", 0);
+    expectError("irradiance uniform --by-normal " + path("absent/x.csv"), 5, "there is no folder",
+                0);
 }
 
 TEST_F(Cli, BadInputIsOneLineAndLeavesNothing) {
@@ -195,6 +221,22 @@ TEST_F(Cli, PairsMayBeInDegrees) {
     expectError("eval lambert --pairs " + path("angles.csv"), 3, "phi_o", 1);
     write("angles.csv", "theta_i,phi_i,theta_o,phi_o\n30,0,190,0\n");
     expectError("eval lambert --pairs " + path("angles.csv"), 3, "0 to 180", 1);
+    write("angles.csv", "theta_i,phi_i,theta_o,phi_o\n30,0,10,0\n30,0,x,0\n");
+    expectError("eval lambert --pairs " + path("angles.csv"), 3, "line 3, column theta_o: 'x'", 1);
+    write("angles.csv", "theta_i;phi_i;theta_o;phi_o\n30;0;10;0\n");
+    expectError("eval lambert --pairs " + path("angles.csv"), 3, "has semicolons", 1);
+}
+
+TEST_F(Cli, PairsMayHaveEmptyLinesAndThoseBelowTheSurfaceAreCounted) {
+    write("in.csv", "theta_i,phi_i,theta_o,phi_o\r\n30,0,60,0\r\n\r\n30,0,120,0\r\n\r\n");
+    const Answer answer = run("eval lambert --pairs " + path("in.csv"));
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_EQ(std::count(answer.out.begin(), answer.out.end(), '\n'), 3) << answer.out;
+    EXPECT_NE(answer.err.find("1 of 2 pairs have a direction below the surface"), std::string::npos)
+        << answer.err;
+    // Of a transmission, wo belongs there.
+    const Answer through = run("eval lambert-transmission --pairs " + path("in.csv"));
+    EXPECT_EQ(through.err.find("below the surface, where f is 0"), std::string::npos);
 }
 
 TEST_F(Cli, AnImpossibleOrderIsRefusedBeforeAnOldFile) {

@@ -207,7 +207,9 @@ TEST_F(Lights, PicturesThatDoNotSayWhatTheyHoldAreSaidToBeTakenAsTables) {
 TEST_F(Lights, ConventionsStateTheirHandInOneWord) {
     const Answer answer = run("irradiance uniform --convention all --json");
     ASSERT_EQ(answer.code, 0) << answer.err;
-    for (const Json& each : Json::parse(answer.out)["conventions"])
+    const Json document = Json::parse(answer.out);
+    ASSERT_GT(document["conventions"].size(), 9U);
+    for (const Json& each : document["conventions"])
         EXPECT_TRUE(each["handedness"] == "left" || each["handedness"] == "right") << each["name"];
 }
 

@@ -56,7 +56,9 @@ TEST_F(Cli, RenderNamesCoefficientsByTheirFile) {
     const std::string lit = "render " + file + " --light uniform --size 8 --samples 1" + to;
     const Answer both = run(lit + path("b.png"));
     ASSERT_EQ(both.code, 0) << both.err;
-    for (const Json& picture : Json::parse(both.out)["pictures"]) EXPECT_EQ(picture["brdf"], file);
+    const Json document = Json::parse(both.out);
+    ASSERT_EQ(document["pictures"].size(), 3U);
+    for (const Json& picture : document["pictures"]) EXPECT_EQ(picture["brdf"], file);
     EXPECT_NE(both.err.find("render " + lobe + " " + file), std::string::npos) << both.err;
     EXPECT_EQ(run(lit + path("c.png") + " --by integration").err, "");
 }

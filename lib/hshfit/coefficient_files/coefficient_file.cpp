@@ -1,5 +1,6 @@
 #include <hshfit/coefficient_files/coefficient_file.h>
 #include <hshfit/coefficient_files/coefficient_formats.h>
+#include <hshfit/coefficient_files/coefficient_path.h>
 #include <hshfit/coefficient_files/representation_file.h>
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
@@ -82,6 +83,10 @@ std::string readRegularFile(const std::string& path, std::size_t limit) {
     }
     if (in.bad()) throw InputError(fmt::format("{}: cannot be read to its end", path));
     return bytes;
+}
+
+void requireCoefficientPath(const std::string& path) {
+    writableForm(path);
 }
 
 void writeCoefficients(const Coefficients& coefficients, const std::string& path) {

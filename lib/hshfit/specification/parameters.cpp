@@ -108,6 +108,19 @@ void readItem(std::string_view owner, std::span<const Parameter> declared, std::
     parsed.stated.insert(std::string(parameter.name));
 }
 
+/// Throws UsageError for "alpha=0,3", whose comma is a decimal point.
+void refuseDecimalComma(std::string_view owner, std::string_view before, std::string_view item) {
+    constexpr std::string_view digits = "0123456789";
+    const bool isFraction = item.find_first_not_of(digits) == std::string_view::npos;
+    if (!isFraction || before.find('=') == std::string_view::npos ||
+        digits.find(before.back()) == std::string_view::npos)
+        return;
+    throw UsageError(
+        fmt::format("{0}: '{1},{2}': commas stand between keys; a number has a point: "
+                    "{1}.{2}",
+                    owner, before, item));
+}
+
 /// Fills in the default of one parameter, or adds its value to the canonical text.
 void complete(std::string_view owner, const Parameter& parameter, Parameters& parsed) {
     const std::string separator = parsed.text.empty() ? "" : ",";
@@ -178,9 +191,12 @@ void Parameters::set(std::string_view name, std::vector<double> values) {
 Parameters readParameters(std::string_view owner, std::span<const Parameter> declared,
                           std::string_view text) {
     Parameters parsed;
-    if (!text.empty())
-        for (const std::string_view item : split(text, ','))
-            readItem(owner, declared, item, parsed);
+    if (text.empty()) return parsed;
+    const std::vector<std::string_view> items = split(text, ',');
+    for (std::size_t k = 1; k < items.size(); ++k)
+        if (!items[k].empty() && !items[k - 1].empty())
+            refuseDecimalComma(owner, items[k - 1], items[k]);
+    for (const std::string_view item : items) readItem(owner, declared, item, parsed);
     return parsed;
 }
 
