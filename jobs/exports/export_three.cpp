@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <array>
 #include <atomic>
 #include <filesystem>
 
@@ -28,13 +29,19 @@ gpu::ThreeLookUps shadersOf(const LookUps& made) {
     return lookUps;
 }
 
+/// Environments of three.js by their number of levels, the shader's own first.
+constexpr std::array engines{"three", "three-512"};
+
 gpu::ThreeLookUps threeLookUps(const Brdf& brdf, const std::string& prefix,
                                const std::string& name) {
-    const LookUps made = lookUpsOf(brdf, "three", prefix, name);
-    const lighting::ElevationTable& table = made.fitted.table;
-    gpu::ThreeLookUps lookUps = shadersOf(made);
-    lookUps.texels = gpu::encode(table.values, static_cast<int>(table.texels),
-                                 static_cast<int>(table.height()), 1, gpu::Number::float32);
+    gpu::ThreeLookUps lookUps;
+    for (std::size_t i = 0; i < engines.size(); ++i) {
+        const LookUps made = lookUpsOf(brdf, engines[i], prefix, name);
+        const lighting::ElevationTable& table = made.fitted.table;
+        if (i == 0) lookUps = shadersOf(made);
+        lookUps.texels[i] = gpu::encode(table.values, static_cast<int>(table.texels),
+                                        static_cast<int>(table.height()), 1, gpu::Number::float32);
+    }
     return lookUps;
 }
 
@@ -44,21 +51,25 @@ gpu::ThreeLookUps threeLookUps(std::size_t materials,
                                const std::function<std::unique_ptr<Brdf>(std::size_t)>& open,
                                const std::string& prefix, const std::string& name,
                                const ProgressCall& progress) {
-    std::vector<LookUps> made(materials);
+    std::vector<std::array<LookUps, engines.size()>> made(materials);
     std::atomic<std::size_t> done = 0;
     eachInParallel(materials, [&](std::size_t n) {
-        made[n] = lookUpsOf(*open(n), "three", prefix, name);
+        const std::unique_ptr<Brdf> brdf = open(n);
+        for (std::size_t i = 0; i < engines.size(); ++i)
+            made[n][i] = lookUpsOf(*brdf, engines[i], prefix, name);
         if (progress) progress(++done, materials);
     });
-    made.front().shader.materials = true;
-    gpu::ThreeLookUps lookUps = shadersOf(made.front());
-    std::vector<double> rows;
-    for (const LookUps& one : made) {
-        const std::vector<double>& values = one.fitted.table.values;
-        rows.insert(rows.end(), values.begin(), values.end());
+    made.front().front().shader.materials = true;
+    gpu::ThreeLookUps lookUps = shadersOf(made.front().front());
+    for (std::size_t i = 0; i < engines.size(); ++i) {
+        std::vector<double> rows;
+        for (const auto& one : made) {
+            const std::vector<double>& values = one[i].fitted.table.values;
+            rows.insert(rows.end(), values.begin(), values.end());
+        }
+        lookUps.texels[i] = gpu::encode(rows, static_cast<int>(rows.size() / (4 * materials)),
+                                        static_cast<int>(materials), 1, gpu::Number::float16);
     }
-    lookUps.texels = gpu::encode(rows, static_cast<int>(rows.size() / (4 * materials)),
-                                 static_cast<int>(materials), 1, gpu::Number::float16);
     return lookUps;
 }
 

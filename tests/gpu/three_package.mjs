@@ -86,9 +86,20 @@ try {
   });
 
   writeFileSync(join(folder, 'use.mjs'), `
-    import { Mesh, LightProbe, ShaderMaterial } from 'three';
+    import { Euler, Mesh, LightProbe, ShaderMaterial } from 'three';
     import { environmentFromFile, environmentFromProbe, facts, material, studio } from 'hshfit-ward';
     import { material as ofLibrary, materials } from 'hshfit-atlas';
+    import { material as form } from 'hshfit-ggx';
+    // The lookups under environments of so many levels: fitted to six, or to seven.
+    const drawn = form();
+    const tables = [6, 7, 8, 6].map((levels) => {
+      const environment = { isPMREMTexture: true, mipmaps: new Array(levels) };
+      drawn.onBeforeRender(null, { environment, environmentRotation: new Euler(), environmentIntensity: 1 });
+      return drawn.uniforms.hsh_prefiltered_table.value;
+    });
+    const [six, seven] = tables.map((table) => table.image.data);
+    const chosen = [tables[2] === tables[1], tables[3] === tables[0], six.length === seven.length,
+      six.some((x, k) => x !== seven[k])];
     const two = ofLibrary({ materialIndex: materials[1] });
     const refused = [2, -1, 0.5, 'lambert ', null, NaN].filter((number) => {
       try {
@@ -108,10 +119,10 @@ try {
     console.log(JSON.stringify([made instanceof ShaderMaterial, new Mesh(undefined, made).material === made,
       made.clone().isHshfitMaterial, facts.name, studio.length, [...light.slice(6, 9)],
       [...up.slice(0, 12)].map((x) => Math.round(x * 1e9) / 1e9),
-      two.materialIndex, two.clone().materialIndex, refused.length]));`);
+      two.materialIndex, two.clone().materialIndex, refused.length, ...chosen]));`);
   const said = JSON.parse(execFileSync(process.execPath, ['use.mjs'], { cwd: folder, encoding: 'utf8' }));
   const wanted = [true, true, true, 'ward:kd=0.1/0.2/0.3,ax=0.3,ay=0.6', 75, [2, 4, 6],
-    [1, 1, 1, 5, 5, 5, 0, 0, 0, 0, 0, 0], 1, 1, 6];
+    [1, 1, 1, 5, 5, 5, 0, 0, 0, 0, 0, 0], 1, 1, 6, true, true, true, true];
   expect(JSON.stringify(said) === JSON.stringify(wanted), `in Node: ${JSON.stringify(said)}`);
   console.log('imported in Node:', JSON.stringify(said));
 } finally {

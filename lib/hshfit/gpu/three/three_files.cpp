@@ -128,12 +128,14 @@ void setLookUps(const ThreeOptions& options, const std::string& prefix, data& pa
     page.set("lastLevel", std::to_string(std::max<std::size_t>(1, lookUps.first.size()) - 1));
     page.set("firstBand", listed(lookUps.first));
     page.set("secondBand", listed(lookUps.second));
-    const ArrayWords words = arrayWords(lookUps.texels.number);
+    const Texels& few = lookUps.texels.front();
+    const ArrayWords words = arrayWords(few.number);
     page.set("lookUpArray", words.array);
     page.set("lookUpType", words.type);
-    page.set("lookUpWidth", std::to_string(lookUps.texels.width));
-    page.set("lookUpHeight", std::to_string(lookUps.texels.height));
-    page.set("lookUpBase64", base64(lookUps.texels.bytes));
+    page.set("lookUpWidth", std::to_string(few.width));
+    page.set("lookUpHeight", std::to_string(few.height));
+    page.set("lookUpBase64", base64(few.bytes));
+    page.set("finerLookUpBase64", base64(lookUps.texels.back().bytes));
 }
 
 /// The textures and the number of a material that the shader's functions take first: as WGSL

@@ -5,6 +5,7 @@
 #include <hshfit/gpu/payload.h>
 #include <hshfit/gpu/shader.h>
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -16,8 +17,10 @@ namespace hshfit::gpu::inline three {
 struct ThreeLookUps {
     std::string wgsl = {};  ///< the snippet, with a texture, cube and sampler of its own
     std::string glsl = {};  ///< PREFIX_prefiltered, on the macro PREFIX_PREFILTERED_LIGHT
-    Texels texels = {};     ///< float16 or float32; of a library a row for each material
-    bool along = false;     ///< the function takes a tangent
+    /// For as many levels as `first` and for one more, of one size; float16 or float32; of a
+    /// library a row for each material.
+    std::array<Texels, 2> texels = {};
+    bool along = false;                           ///< the function takes a tangent
     std::vector<double> first = {}, second = {};  ///< zonal coefficients of bands 1 and 2 by level
 };
 
