@@ -5,13 +5,16 @@
 #include <hshfit/material_library/log_terms.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace hshfit::material_library {
 namespace {
 
 constexpr int mostTop = 255;
+constexpr std::array<double, scaleCodes> stepScales{0.5, 0.75, 1, 1.5};
 /// The weights of colours of lit pixels, and of their channels each, where all pairs have 1.
 constexpr double colourWeight = 48, litWeight = 2;
 
@@ -37,8 +40,12 @@ Matrix matrixOf(const Basis& basis) {
 
 }  // namespace
 
+double stepScale(unsigned code) {
+    return stepScales[code];
+}
+
 std::size_t Basis::channelBytes() const {
-    std::size_t bits = 0;
+    std::size_t bits = scaled ? scaleBits : 0;
     for (const std::uint8_t width : widths) bits += width;
     return 1 + (bits + 7) / 8;
 }
@@ -47,19 +54,24 @@ std::size_t Basis::bytes() const {
     return 4 * mean.size() + 2 * components.size() + widths.size() + 4;
 }
 
-std::vector<std::uint8_t> pack(const Basis& basis, std::span<const double> coordinates,
-                               double top) {
+std::vector<std::uint8_t> pack(const Basis& basis, std::span<const double> coordinates, double top,
+                               unsigned scale) {
     assert(coordinates.size() == basis.size());
+    assert(basis.scaled ? scale < scaleCodes : scale == plainScale);
     std::vector<std::uint8_t> code(basis.channelBytes(), 0);
     code[0] = topCode(top);
     std::size_t bit = 8;
+    const auto put = [&](unsigned number, int width) {
+        for (int b = 0; b < width; ++b, ++bit)
+            code[bit / 8] |= static_cast<std::uint8_t>((number >> b & 1u) << bit % 8);
+    };
+    if (basis.scaled) put(scale, scaleBits);
+    const double step = stepScale(scale) * basis.step;
     for (std::size_t k = 0; k < basis.size(); ++k) {
         const int half = halfRange(basis.widths[k]);
         const double most = half - 1;
-        const double steps = std::clamp(std::round(coordinates[k] / basis.step), -most, most);
-        const auto number = static_cast<unsigned>(static_cast<int>(steps) + half);
-        for (int b = 0; b < basis.widths[k]; ++b, ++bit)
-            code[bit / 8] |= static_cast<std::uint8_t>((number >> b & 1u) << bit % 8);
+        const double steps = std::clamp(std::round(coordinates[k] / step), -most, most);
+        put(static_cast<unsigned>(static_cast<int>(steps) + half), basis.widths[k]);
     }
     return code;
 }
@@ -68,11 +80,15 @@ ChannelCode unpack(const Basis& basis, std::span<const std::uint8_t> code) {
     assert(code.size() == basis.channelBytes());
     ChannelCode channel{.coordinates = {}, .top = topOf(code[0])};
     std::size_t bit = 8;
-    for (const std::uint8_t width : basis.widths) {
-        int number = 0;
-        for (int b = 0; b < width; ++b, ++bit) number |= (code[bit / 8] >> bit % 8 & 1) << b;
-        channel.coordinates.push_back(basis.step * (number - halfRange(width)));
-    }
+    const auto take = [&](int width) {
+        unsigned number = 0;
+        for (int b = 0; b < width; ++b, ++bit) number |= (code[bit / 8] >> bit % 8 & 1u) << b;
+        return number;
+    };
+    if (basis.scaled) channel.scale = take(scaleBits);
+    const double step = stepScale(channel.scale) * basis.step;
+    for (const std::uint8_t width : basis.widths)
+        channel.coordinates.push_back(step * (static_cast<int>(take(width)) - halfRange(width)));
     return channel;
 }
 
@@ -91,44 +107,55 @@ LogMaterial decode(const Basis& basis, std::span<const std::uint8_t> codes) {
     return material;
 }
 
-struct Encoder::Metric {
-    Eigen::MatrixXd measured;  ///< components times the metric of all pairs
-    Eigen::MatrixXd gram;      ///< that times components
-    Eigen::MatrixXd seen;      ///< components at the pairs of pictures, [component][pair]
-    Eigen::MatrixXd peaks;     ///< and at the few pairs of the samples
-};
-
-Encoder::Encoder(const Basis& basis, const LogSpace& space) : basis_(basis), space_(space) {
-    const LogSamples& samples = space.samples();
-    const Eigen::MatrixXd measured = matrixOf(basis) * samples.metric;
-    metric_ =
-        std::make_unique<const Metric>(Metric{measured, measured * matrixOf(basis).transpose(),
-                                              matrixOf(basis) * samples.seen.terms.transpose(),
-                                              matrixOf(basis) * samples.few().transpose()});
-}
-
-Encoder::~Encoder() = default;
+namespace {
 
 /// The cost of coordinates a of all channels, a^T gram a - 2 a^T right: the first coordinate of
 /// each channel, then the second.
-struct Encoder::Cost {
+struct Cost {
+    double of(const Eigen::VectorXd& a) const { return a.dot(gram * a) - 2 * a.dot(right); }
+
     Eigen::MatrixXd gram;
     Eigen::VectorXd right;
 };
 
-Encoder::Cost Encoder::costOf(const LogMaterial& material, std::size_t components) const {
-    const LogSamples& samples = space_.samples();
-    const auto used = static_cast<Eigen::Index>(components),
-               terms = static_cast<Eigen::Index>(basis_.mean.size()),
-               channels = static_cast<Eigen::Index>(material.channels());
-    const Eigen::Map<const Eigen::VectorXd> mean(basis_.mean.data(), terms);
-    const Eigen::Map<const Eigen::MatrixXd> exponents(material.exponents.data(), terms, channels);
+}  // namespace
+
+struct Encoder::Metric {
+    Metric(const Basis& basis, const LogSpace& space);
+    Cost costOf(const LogMaterial& material, Eigen::Index used) const;
+
+    const LogSamples& samples;
+    Eigen::VectorXd mean;
+    Eigen::MatrixXd measured;  ///< components times the metric of all pairs
+    Eigen::MatrixXd gram;      ///< that times components
+    Eigen::MatrixXd seen;      ///< components at the pairs of pictures, [component][pair]
+    Eigen::MatrixXd few;       ///< and at the few pairs of the samples
+};
+
+Encoder::Metric::Metric(const Basis& basis, const LogSpace& space)
+    : samples(space.samples()),
+      mean(Eigen::Map<const Eigen::VectorXd>(basis.mean.data(),
+                                             static_cast<Eigen::Index>(basis.mean.size()))),
+      measured(matrixOf(basis) * samples.metric),
+      gram(measured * matrixOf(basis).transpose()),
+      seen(matrixOf(basis) * samples.seen.terms.transpose()),
+      few(matrixOf(basis) * samples.few().transpose()) {}
+
+Encoder::Encoder(const Basis& basis, const LogSpace& space)
+    : basis_(basis), metric_(std::make_unique<const Metric>(basis, space)) {}
+
+Encoder::~Encoder() = default;
+
+Cost Encoder::Metric::costOf(const LogMaterial& material, Eigen::Index used) const {
+    const auto channels = static_cast<Eigen::Index>(material.channels());
+    const Eigen::Map<const Eigen::MatrixXd> exponents(material.exponents.data(), mean.size(),
+                                                      channels);
     const Eigen::MatrixXd logs = samples.seen.logs(material),
                           peaks =
                               samples.peakWeights(samples.peakLogs(material), LogSamples::peakStep),
                           off = exponents.colwise() - mean, offFew = samples.few() * off,
                           offSeen = samples.seen.terms * off;
-    const auto seen = metric_->seen.topRows(used), few = metric_->peaks.topRows(used);
+    const auto usedSeen = seen.topRows(used), usedFew = few.topRows(used);
     Eigen::MatrixXd pictures = colourWeight * samples.seen.colours(logs);
     const Eigen::MatrixXd lit = litWeight * samples.seen.weights(logs);
     Cost cost{Eigen::MatrixXd(used * channels, used * channels),
@@ -137,13 +164,14 @@ Encoder::Cost Encoder::costOf(const LogMaterial& material, std::size_t component
         pictures.col(c * channels + c) += lit.col(c);
         const auto row = Eigen::seqN(c, used, channels);
         for (Eigen::Index d = 0; d < channels; ++d) {
-            const Eigen::MatrixXd inPictures = seen * pictures.col(c * channels + d).asDiagonal();
-            cost.gram(row, Eigen::seqN(d, used, channels)) = inPictures * seen.transpose();
+            const auto weight = pictures.col(c * channels + d);
+            const Eigen::MatrixXd inPictures = usedSeen * weight.asDiagonal();
+            cost.gram(row, Eigen::seqN(d, used, channels)) = inPictures * usedSeen.transpose();
             cost.right(row) += inPictures * offSeen.col(d);
         }
-        const Eigen::MatrixXd atPeaks = few * peaks.col(c).asDiagonal();
-        cost.gram(row, row) += metric_->gram.topLeftCorner(used, used) + atPeaks * few.transpose();
-        cost.right(row) += metric_->measured.topRows(used) * off.col(c) + atPeaks * offFew.col(c);
+        const Eigen::MatrixXd atPeaks = usedFew * peaks.col(c).asDiagonal();
+        cost.gram(row, row) += gram.topLeftCorner(used, used) + atPeaks * usedFew.transpose();
+        cost.right(row) += measured.topRows(used) * off.col(c) + atPeaks * offFew.col(c);
     }
     return cost;
 }
@@ -151,18 +179,30 @@ Encoder::Cost Encoder::costOf(const LogMaterial& material, std::size_t component
 std::vector<std::uint8_t> Encoder::encode(const LogMaterial& material,
                                           std::size_t components) const {
     const std::size_t used = std::min(components, basis_.size()), channels = material.channels();
-    const Cost cost = costOf(material, used);
+    const Cost cost = metric_->costOf(material, static_cast<Eigen::Index>(used));
     Eigen::VectorXd most(cost.right.size());  // steps
     for (Eigen::Index k = 0; k < most.size(); ++k)
         most[k] = halfRange(basis_.widths[static_cast<std::size_t>(k) / channels]) - 1;
-    const Eigen::VectorXd all = basis_.step * leastInSteps(basis_.step * basis_.step * cost.gram,
-                                                           basis_.step * cost.right, most);
+    Eigen::VectorXd all;
+    unsigned scale = plainScale;
+    double least = std::numeric_limits<double>::infinity();
+    for (unsigned code = 0; code < scaleCodes; ++code) {
+        if (!basis_.scaled && code != plainScale) continue;
+        const double step = stepScale(code) * basis_.step;
+        Eigen::VectorXd found =
+            step * leastInSteps(step * step * cost.gram, step * cost.right, most);
+        const double sum = cost.of(found);
+        if (all.size() > 0 && !(sum < least)) continue;
+        least = sum;
+        scale = code;
+        all = std::move(found);
+    }
     std::vector<std::uint8_t> codes;
     for (std::size_t c = 0; c < channels; ++c) {
         std::vector<double> coordinates(basis_.size(), 0.0);
         for (std::size_t k = 0; k < used; ++k)
             coordinates[k] = all[static_cast<Eigen::Index>(k * channels + c)];
-        const std::vector<std::uint8_t> one = pack(basis_, coordinates, material.tops[c]);
+        const std::vector<std::uint8_t> one = pack(basis_, coordinates, material.tops[c], scale);
         codes.insert(codes.end(), one.begin(), one.end());
     }
     return codes;

@@ -207,16 +207,23 @@ std::vector<double> largestOf(const VectorSet& all, const Robust& robust, std::s
     return largest;
 }
 
-/// The error of a vector after rounding to the widths.
-double storedError(Eigen::VectorXd rest, const Principal& principal, const Widths& widths) {
-    for (std::size_t k = 0; k < widths.bits.size(); ++k) {
-        if (widths.bits[k] == 0) continue;
-        const auto component = principal.components.col(static_cast<Eigen::Index>(k));
-        const double most = std::exp2(widths.bits[k] - 1) - 1;
-        const double q = std::clamp(std::round(component.dot(rest) / widths.step), -most, most);
-        rest -= q * widths.step * component;
+/// The squared error of a vector after rounding to the widths, with the best scale. `coordinates`
+/// are those of its first components, `square` is that of its length.
+double storedSquare(const Eigen::VectorXd& coordinates, double square, const Widths& widths) {
+    double least = square;
+    for (unsigned code = 0; code < scaleCodes; ++code) {
+        const double step = stepScale(code) * widths.step;
+        double sum = square;
+        for (std::size_t k = 0; k < widths.bits.size(); ++k) {
+            if (widths.bits[k] == 0) continue;
+            const double a = coordinates[static_cast<Eigen::Index>(k)],
+                         most = std::exp2(widths.bits[k] - 1) - 1,
+                         rest = a - step * std::clamp(std::round(a / step), -most, most);
+            sum += rest * rest - a * a;
+        }
+        least = std::min(least, sum);
     }
-    return rest.norm();
+    return std::max(least, 0.0);
 }
 
 /// Mean over vectors of the root mean square error after rounding, for each of several widths.
@@ -225,9 +232,10 @@ std::vector<double> storedErrors(const VectorSet& all, const Principal& principa
     std::vector<double> means(several.size(), 0.0);
     all.eachBlock([&](const VectorBlock& block) {
         for (Eigen::Index v = 0; v < block.count(); ++v) {
-            const Eigen::VectorXd centred = block.columns.col(v) - principal.mean;
+            const Eigen::VectorXd centred = block.columns.col(v) - principal.mean,
+                                  a = principal.components.transpose() * centred;
             for (std::size_t n = 0; n < several.size(); ++n)
-                means[n] += storedError(centred, principal, several[n]);
+                means[n] += std::sqrt(storedSquare(a, centred.squaredNorm(), several[n]));
         }
     });
     for (double& mean : means) mean /= static_cast<double>(all.count());
@@ -240,7 +248,7 @@ std::size_t budgetOf(const LearnOptions& options) {
         throw UsageError(
             fmt::format("{} leaves no byte for a component: a channel needs 2 or more",
                         Setting{"LearnOptions::bytes", std::to_string(options.bytes)}));
-    return 8 * (channel - 1);
+    return 8 * (channel - 1) - scaleBits;
 }
 
 std::size_t chosen(const std::vector<ComponentsTrial>& trials) {
@@ -263,6 +271,7 @@ Basis basisOf(const LogSpace& space, const Principal& principal, const Widths& w
     };
     Basis basis;
     basis.step = widths.step;
+    basis.scaled = true;
     for (const double value : back(principal.mean)) basis.mean.push_back(static_cast<float>(value));
     for (std::size_t k = 0; k < widths.bits.size(); ++k) {
         if (widths.bits[k] == 0) continue;

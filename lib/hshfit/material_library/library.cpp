@@ -153,6 +153,7 @@ std::string checksum(const Basis& basis) {
     for (const double value : basis.mean) add(static_cast<float>(value));
     for (const double value : basis.components) add(Imath::half(static_cast<float>(value)).bits());
     for (const std::uint8_t width : basis.widths) add(width);
+    if (basis.scaled) add(std::uint8_t{scaleBits});
     return sha256(bytes);
 }
 

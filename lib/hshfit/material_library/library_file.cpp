@@ -155,11 +155,16 @@ bool isOctet(unsigned char) {
     return true;
 }
 
+int readVersion(const JsonFields& root) {
+    return root.integer("version", 1, newestLibrary);
+}
+
 Basis readBasis(const Reader& reader, const JsonFields& root) {
     Basis basis;
     if (!reader.has("widths")) return basis;
     basis.widths = reader.widths();
     basis.step = static_cast<float>(root.number("step", 1e-12, 1e6));
+    basis.scaled = readVersion(root) > versionWithoutScales;
     const std::vector<float> mean = reader.floats("mean", logTerms().size());
     basis.mean.assign(mean.begin(), mean.end());
     if (basis.size() > 0)
@@ -314,7 +319,7 @@ Library parse(const Reader& reader, const std::string& name, const BasisOf& basi
     const JsonFields root(document, "", name);
     if (root.word("format") != libraryFormat)
         root.fail(fmt::format("is not '{}'", libraryFormat), "format");
-    root.integer("version", 1, newestLibrary);
+    readVersion(root);
     const int terms = static_cast<int>(logTerms().size());
     root.integer("terms", terms, terms);
     const JsonFields unseen = root.object("unseen");

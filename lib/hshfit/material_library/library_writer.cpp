@@ -45,7 +45,7 @@ OrderedJson rowOf(const Measured& m) {
 /// The fields of the head around the rows.
 OrderedJson headOf(const Library& library) {
     return {{"format", libraryFormat},
-            {"version", newestLibrary},
+            {"version", library.basis.scaled ? newestLibrary : versionWithoutScales},
             {"generator", fmt::format("hshfit {}", version)},
             {"terms", logTerms().size()},
             {"step", library.basis.step},

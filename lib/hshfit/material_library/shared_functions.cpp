@@ -11,10 +11,12 @@
 namespace hshfit::material_library {
 namespace {
 
-/// Half precision holds every whole number up to this one, and so every coordinate of at most
-/// `widestHalf` bits.
-constexpr double wholeHalves = 2048;
-constexpr std::uint8_t widestHalf = 12;
+/// Half precision holds every whole number up to 2048, and so every coordinate of at most
+/// `widestHalf` bits; with scales, which take three quarters of it, of at most `widestScaled`. The
+/// first of two halves of a wider one is a multiple of this one, and both are exact.
+constexpr std::uint8_t widestHalf = 12, widestScaled = 10;
+constexpr double wholeHalves = 2048, scaledHalves = 64;
+constexpr double quarters = 4;  ///< of which scales are multiples
 
 }  // namespace
 
@@ -44,7 +46,8 @@ Representation sharedFunctions(const Basis& basis) {
 std::vector<TexelPart> texelParts(const Basis& basis) {
     std::vector<TexelPart> parts;
     for (std::size_t k = 0; k < basis.size(); ++k) {
-        if (basis.widths[k] > widestHalf) parts.push_back({k + 1, wholeHalves});
+        if (basis.widths[k] > (basis.scaled ? widestScaled : widestHalf))
+            parts.push_back({k + 1, basis.scaled ? scaledHalves : wholeHalves});
         parts.push_back({k + 1, 1});
     }
     return parts;
@@ -63,8 +66,10 @@ std::vector<double> texelsOf(const Basis& basis, const Material& material) {
         for (std::size_t n = 0; n < parts.size(); ++n) {
             const auto& [function, scale] = parts[n];
             if (n == 0 || parts[n - 1].function != function)
-                rest = std::round(code.coordinates[function - 1] / basis.step);
-            texels[4 * n + c] = std::trunc(rest / scale);
+                rest =
+                    std::round(quarters * code.coordinates[function - 1] / basis.step) / quarters;
+            const bool last = n + 1 == parts.size() || parts[n + 1].function != function;
+            texels[4 * n + c] = last ? rest : std::trunc(rest / scale);
             rest -= scale * texels[4 * n + c];
         }
         texels[4 * parts.size() + c] = std::round((code.top - std::log(logOffset)) * topsPerLog);

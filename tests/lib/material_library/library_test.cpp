@@ -86,6 +86,24 @@ TEST(Codes, RoundToHalfAStepAndKeepTheBoundAboveTheGreatestValue) {
     EXPECT_EQ(unpack(basis, pack(basis, std::vector<double>{9, 9, 0}, 0)).coordinates[0], 0.25);
 }
 
+TEST(Codes, HaveScalesOfTheirOwn) {
+    const std::vector<double> scales{0.5, 0.75, 1, 1.5};
+    ASSERT_EQ(scales.size(), scaleCodes);
+    EXPECT_EQ(scales[plainScale], 1);
+    const Basis basis{
+        .mean = {0}, .components = {1, 1, 1}, .widths = {2, 5, 16}, .step = 0.25, .scaled = true};
+    EXPECT_EQ(basis.channelBytes(), 1u + 4u);  // 2 and 23 bits
+    for (unsigned code = 0; code < scaleCodes; ++code) {
+        const double step = 0.25 * scales[code];
+        const std::vector<double> coordinates{-step, 15 * step, 4000.4 * step};
+        const ChannelCode back = unpack(basis, pack(basis, coordinates, 1.2, code));
+        EXPECT_EQ(back.scale, code);
+        EXPECT_EQ(back.coordinates[0], -step);
+        EXPECT_EQ(back.coordinates[1], 15 * step);
+        EXPECT_NEAR(back.coordinates[2], 4000 * step, 1e-9);
+    }
+}
+
 /// A material of twelve normal numbers of falling spread.
 LogBrdf ofTwelve(std::mt19937& random) {
     std::normal_distribution<double> number;
@@ -128,13 +146,16 @@ TEST(Codes, AreTheBestOfTheirNeighbours) {
     for (int trial = 0; trial < 4; ++trial) {
         const LogMaterial material = space().project(ofTwelve(random), "x", "made").material();
         const std::vector<std::uint8_t> code = Encoder(basis, space()).encode(material, 3);
-        const std::vector<double> found = unpack(basis, code).coordinates;
+        const ChannelCode channel = unpack(basis, code);
+        const std::vector<double>& found = channel.coordinates;
+        const double step = stepScale(channel.scale) * basis.step;
         double least = 0, ours = 0;
         for (int n = 0; n < 27; ++n) {
             std::vector<double> near = found;
             for (int k = 0, rest = n; k < 3; ++k, rest /= 3)
-                near[static_cast<std::size_t>(k)] += basis.step * (rest % 3 - 1);
-            const LogMaterial decoded = decode(basis, pack(basis, near, material.tops[0]));
+                near[static_cast<std::size_t>(k)] += step * (rest % 3 - 1);
+            const LogMaterial decoded =
+                decode(basis, pack(basis, near, material.tops[0], channel.scale));
             Eigen::VectorXd d(static_cast<Eigen::Index>(logTerms().size()));
             for (std::size_t t = 0; t < logTerms().size(); ++t)
                 d[static_cast<Eigen::Index>(t)] = decoded.exponents[t] - material.exponents[t];
@@ -143,6 +164,36 @@ TEST(Codes, AreTheBestOfTheirNeighbours) {
             if (n == 13) ours = cost;
         }
         EXPECT_LE(ours, 1.02 * least) << trial;
+    }
+}
+
+TEST(Codes, ScalesServeMaterialsNearTheMeanAndBeyondTheOthers) {
+    const Library library = learn(space(), family(24, 11), {}, {.components = 2, .bytes = 9},
+                                  {.log = 10, .maximum = 10, .flip = 1});
+    ASSERT_TRUE(library.basis.scaled);
+    Basis plain = library.basis;
+    plain.scaled = false;
+    const Encoder encoder(library.basis, space()), withoutScales(plain, space());
+    // Numbers of the family are up to 0.4.
+    for (const double size : {0.06, 0.6}) {
+        double error = 0, errorWithout = 0, scales = 0;
+        for (int n = 0; n < 8; ++n) {
+            const double angle = 0.3 + n * pi / 4;
+            const LogMaterial material =
+                space()
+                    .project(madeOf({size * std::cos(angle), size * std::sin(angle)}), "x", "made")
+                    .material();
+            const std::vector<std::uint8_t> code = encoder.encode(material, 2);
+            scales += stepScale(unpack(library.basis, code).scale) / 8;
+            error += distance(space(), material, decode(library.basis, code));
+            errorWithout +=
+                distance(space(), material, decode(plain, withoutScales.encode(material, 2)));
+        }
+        EXPECT_LT(error, 0.9 * errorWithout) << size;
+        if (size < 0.4)
+            EXPECT_LT(scales, 0.9);
+        else
+            EXPECT_GT(scales, 1.1);
     }
 }
 
@@ -287,6 +338,29 @@ TEST_F(LibraryFile, ReadingGivesWhatWasWritten) {
     EXPECT_EQ(bytesOf(library, again.path()), file());
     EXPECT_EQ(library.measured.size(), 7u);
     EXPECT_EQ(library.materials.size(), 7u);
+}
+
+TEST_F(LibraryFile, WithoutScalesHasVersion1) {
+    Library library = parsed(file());
+    EXPECT_TRUE(library.basis.scaled);
+    EXPECT_NE(file().find("\"version\":2"), std::string::npos);
+    const std::string scaledSum = checksum(library.basis);
+    library.basis.scaled = false;
+    EXPECT_NE(checksum(library.basis), scaledSum);
+    const Encoder encoder(library.basis, space());
+    for (std::size_t n = 0; n < library.materials.size(); ++n)
+        if (library.materials[n].kind == Kind::coded)
+            library.materials[n].codes = encoder.encode(library.measured[n].material(), 2);
+    const test::TemporaryFile at("");
+    std::string bytes = bytesOf(library, at.path());
+    EXPECT_NE(bytes.find("\"version\":1"), std::string::npos);
+    const Library read = parsed(bytes);
+    EXPECT_FALSE(read.basis.scaled);
+    for (const Material& material : library.materials)
+        EXPECT_EQ(find(read, material.name)->codes, material.codes);
+    // A version that is not known is refused.
+    bytes[bytes.find("\"version\":1") + 10] = '3';
+    EXPECT_THROW(parsed(bytes), InputError);
 }
 
 TEST_F(LibraryFile, TheRestBeyondTheTermsIsKeptAndMayBeAbsent) {
