@@ -145,8 +145,13 @@ void AtomicFile::discard() noexcept {
 }
 
 void AtomicFile::fail(int error) const {
-    throw OutputError(
-        fmt::format("cannot write '{}': {}", path_, std::generic_category().message(error)));
+    const auto folder = std::filesystem::path(path_).parent_path();
+    std::error_code ignored;
+    const bool absent =
+        error == ENOENT && !folder.empty() && !std::filesystem::exists(folder, ignored);
+    throw OutputError(fmt::format("cannot write '{}': {}", path_,
+                                  absent ? fmt::format("there is no folder '{}'", folder.string())
+                                         : std::generic_category().message(error)));
 }
 
 void AtomicFile::write(std::string_view text) {
