@@ -37,7 +37,11 @@ FormError formError(const Brdf& f, const Brdf& g, const PairSample& pairs) {
 
 std::string beyond(const FormError& error, const Limits& limits) {
     const auto text = [](const char* of, double value, double limit) {
-        return fmt::format("has a {} of {:.3g}, limit {:.3g}", of, value, limit);
+        // An excess that three digits do not show has more.
+        std::string digits = fmt::format("{:.3g}", value);
+        for (int more = 4; digits == fmt::format("{:.3g}", limit) && more <= 17; ++more)
+            digits = fmt::format("{:.{}g}", value, more);
+        return fmt::format("has a {} of {}, limit {:.3g}", of, digits, limit);
     };
     if (error.logError > limits.log)
         return text("mean error of ln(f + 0.001)", error.logError, limits.log);

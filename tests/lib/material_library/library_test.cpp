@@ -247,6 +247,9 @@ TEST(Limits, TheFirstThatIsExceededIsNamed) {
     EXPECT_NE(beyond(error, {.maximum = 0.19}).find("f cos, of 0.2, limit 0.19"),
               std::string::npos);
     EXPECT_NE(beyond(error, {.flip = 0.04}).find("FLIP of 0.05, limit 0.04"), std::string::npos);
+    FormError slight = error;
+    slight.flip = 0.100021;
+    EXPECT_NE(beyond(slight, {.flip = 0.1}).find("FLIP of 0.10002, limit 0.1"), std::string::npos);
 }
 
 TEST(Limits, MaterialsBeyondOneKeepTheirOwnFormAndSayWhy) {
