@@ -5,6 +5,7 @@
 
 #include <hshfit/error.h>
 #include <hshfit/files/json_fields.h>
+#include <hshfit/files/output_folder.h>
 #include <hshfit/files/output_rule.h>
 #include <hshfit/files/standard_streams.h>
 #include <hshfit/version.h>
@@ -108,18 +109,8 @@ void requireFolders(const CLI::App& command) {
     for (const CLI::Option* option : command.get_options()) {
         const Values* row = findValues(command, *option);
         if (!row || row->files != Files::written || !isOutput(command, *option)) continue;
-        for (const std::string& path : option->results()) {
-            // Several results go to a new folder, "out/".
-            const std::string named = path.substr(0, path.find_last_not_of('/') + 1);
-            const auto folder = std::filesystem::path(named).parent_path();
-            std::error_code error;
-            if (isStandardOutput(path) || folder.empty() ||
-                std::filesystem::status(folder, error).type() !=
-                    std::filesystem::file_type::not_found)
-                continue;
-            throw OutputError(
-                fmt::format("cannot write '{}': there is no folder '{}'", path, folder.string()));
-        }
+        for (const std::string& path : option->results())
+            if (!isStandardOutput(path)) requireOutputFolder(path);
     }
 }
 

@@ -1,6 +1,7 @@
 #include <hshfit/error.h>
 #include <hshfit/files/atomic_file.h>
 #include <hshfit/files/made_from.h>
+#include <hshfit/files/output_folder.h>
 #include <hshfit/files/standard_streams.h>
 #include <hshfit/wording.h>
 
@@ -145,13 +146,9 @@ void AtomicFile::discard() noexcept {
 }
 
 void AtomicFile::fail(int error) const {
-    const auto folder = std::filesystem::path(path_).parent_path();
-    std::error_code ignored;
-    const bool absent =
-        error == ENOENT && !folder.empty() && !std::filesystem::exists(folder, ignored);
-    throw OutputError(fmt::format("cannot write '{}': {}", path_,
-                                  absent ? fmt::format("there is no folder '{}'", folder.string())
-                                         : std::generic_category().message(error)));
+    if (error == ENOENT) requireOutputFolder(path_);
+    throw OutputError(
+        fmt::format("cannot write '{}': {}", path_, std::generic_category().message(error)));
 }
 
 void AtomicFile::write(std::string_view text) {
