@@ -14,6 +14,7 @@
 
 #include <jobs/common/option_words.h>
 #include <jobs/fits/fit.h>
+#include <jobs/fits/fit_tables.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -93,10 +94,8 @@ std::string text(const jobs::Fitted& fitted, const FitArguments& arguments) {
     lines += heldLine(fitted.preset["fit"]["held"]);
     lines += instrumentText(result);
     if (fitted.search) lines += brdfs::textOf(*fitted.search);
-    // A parameter that is open by itself is "not determined by the data" in its own line.
-    for (const auto& set : result.ambiguous)
-        if (set.size() > 1)
-            lines += fmt::format("  ambiguous together: {}\n", fmt::join(set, ", "));
+    for (const std::string& set : jobs::notToldApart(result))
+        lines += fmt::format("  ambiguous together: {}\n", set);
     lines += fmt::format("  rms residual {:.6g} over {} values, {} iterations, {}\n", result.loss,
                          result.values, result.iterations,
                          result.converged ? "converged" : "NOT CONVERGED");

@@ -227,9 +227,8 @@ private:
         addHeading("Results");
         addText("Parameters of the model. " + parameterLegend(report_));
         addTable(parameterTable(report_, fit_, false), "llrrrrrl");
-        for (const auto& set : report_.result.ambiguous)
-            if (set.size() > 1)
-                addText(fmt::format("The data do not tell apart: {}.", fmt::join(set, ", ")));
+        for (const std::string& set : notToldApart(report_.result))
+            addText(fmt::format("The data do not tell apart: {}.", set));
         addValues();
     }
 

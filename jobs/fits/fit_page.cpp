@@ -118,10 +118,7 @@ FitSection addFitSection(const brdfs::FitReport& report, const nlohmann::ordered
     page.set("facts", pairsOf(fitFacts(report, fit)));
     page.set("parameters", tableOf(parameterTable(report, fit, true)));
     page.set("legend", parameterLegend(report));
-    std::vector<std::string> ambiguous;
-    for (const auto& set : report.result.ambiguous)
-        if (set.size() > 1) ambiguous.push_back(fmt::format("{}", fmt::join(set, ", ")));
-    page.set("ambiguous", textsOf(ambiguous));
+    page.set("ambiguous", textsOf(notToldApart(report.result)));
     page.set("budget", tableOf(budgetTable(report.result)));
     if (report.result.instrument) {
         page.set("anyInstrument", true);

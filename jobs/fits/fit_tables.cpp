@@ -135,6 +135,13 @@ std::string parameterLegend(const brdfs::FitReport& report) {
         report.result.budget ? ", combined with the budget" : "", 100 * brdfs::Budget::probability);
 }
 
+std::vector<std::string> notToldApart(const brdfs::FitResult& result) {
+    std::vector<std::string> texts;
+    for (const auto& set : result.ambiguous)
+        if (set.size() > 1) texts.push_back(fmt::format("{}", fmt::join(set, ", ")));
+    return texts;
+}
+
 TextTable budgetTable(const brdfs::FitResult& result) {
     TextTable table{.heads = {"parameter", "contribution", "type", "distribution", "u(x)",
                               "sensitivity", "contribution to u", "share", "ν"},

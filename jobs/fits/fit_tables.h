@@ -30,6 +30,10 @@ TextTable parameterTable(const brdfs::FitReport& report, const nlohmann::ordered
 /// The words of its columns.
 std::string parameterLegend(const brdfs::FitReport& report);
 
+/// The sets of parameters that the data do not tell apart, "a, b" each. A single parameter that is
+/// not determined is in no set: the row of the parameter says it.
+std::vector<std::string> notToldApart(const brdfs::FitResult& result);
+
 /// The budget: its contributions parameter by parameter, each with the combined and the expanded
 /// uncertainty at its end. Empty without one.
 TextTable budgetTable(const brdfs::FitResult& result);
