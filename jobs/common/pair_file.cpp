@@ -59,7 +59,7 @@ void requireColumns(const std::string& path, const char* const (&names)[count], 
     }
 }
 
-/// A direction from the texts of its angles, those of two columns from `first` on.
+/// A direction from the texts of its angles, which stand in two columns from `first` on.
 Direction directionOf(const std::array<std::string, 4>& cells, std::size_t first,
                       const std::string& where) {
     const Angles angles{numberIn(cells[first], where, angleColumns[first]),

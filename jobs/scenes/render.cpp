@@ -175,8 +175,8 @@ void remarkOwnSum(const Material& material, const RenderOptions& options,
                   const Listener& listener) {
     if (options.by != RenderOptions::By::both || material.name == material.brdf->name()) return;
     listener.say(
-        fmt::format("{0}: both ways show the sum of its coefficients, projected again for the "
-                    "second; what it loses of {1} is seen beside that: render {1} {0}",
+        fmt::format("{0}: both pictures show the sum of its coefficients, the second one projected "
+                    "again; to see what it loses of {1}, render {1} {0}",
                     material.name, material.brdf->name()));
 }
 

@@ -50,8 +50,8 @@ struct RenderOptions {
     }
 };
 
-/// The name of a material beside its picture: the file of coefficients, whose own name is that of
-/// the BRDF that they were made from.
+/// The name of a material beside its picture: the path of a file of coefficients, which calls
+/// itself by the BRDF that it was made from.
 std::string shownName(const std::string& spec, const Brdf& brdf);
 
 /// One square of the sheet.

@@ -4,7 +4,7 @@
 
 namespace hshfit::inline coefficient_files {
 
-/// Throws UsageError where the extension is that of no coefficient file: a check before the work,
+/// Throws UsageError where no coefficient file has this extension: a check before the work,
 /// which writeCoefficients repeats.
 void requireCoefficientPath(const std::string& path);
 

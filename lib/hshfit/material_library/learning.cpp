@@ -208,7 +208,7 @@ std::vector<double> largestOf(const VectorSet& all, const Robust& robust, std::s
 }
 
 /// The squared error of a vector after rounding to the widths, with the best scale. `coordinates`
-/// are those of its first components, `square` is that of its length.
+/// are along its first components, `square` is its squared length.
 double storedSquare(const Eigen::VectorXd& coordinates, double square, const Widths& widths) {
     double least = square;
     for (unsigned code = 0; code < scaleCodes; ++code) {

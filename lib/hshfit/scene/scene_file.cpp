@@ -132,7 +132,7 @@ Scene readScene(const std::string& path, Purpose purpose) {
     const nlohmann::json json =
         parseJson({reinterpret_cast<const char*>(file.data()), file.size()}, path, deepest);
     const JsonFields root(json, "", path);
-    // Before the keys, which those of another kind of file are not.
+    // Checked before the keys, since another kind of file has other keys.
     if (root.has("format") && root.word("format") != "hshfit-scene")
         failWord(root, "format", {"hshfit-scene"});
     onlyKeys(root, {"format", "version", "about", "materials", "lights", "objects", "cameras",

@@ -60,8 +60,8 @@ struct BandNumbers {
 };
 const BandNumbers numbers;
 
-/// Summands of the product of a kernel with another, but for those of the other: [l]. `cosine` is
-/// that of the angle between their axes.
+/// The product of this kernel with another, both about axes that have that cosine between them, is
+/// the sum over l of these numbers times the other's bands: [l].
 Bands turned(const std::vector<double>& bands, double cosine) {
     Bands result(static_cast<Eigen::Index>(bands.size()));
     double before = 0, here = 1;
