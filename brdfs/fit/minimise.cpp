@@ -53,7 +53,7 @@ public:
         gradient.array() /= scale.array();
         pull_ =
             equations.cost > 0 ? gradient.cwiseAbs().maxCoeff() / std::sqrt(2 * equations.cost) : 0;
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(hessian);
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen{Eigen::MatrixXd(hessian)};
         constexpr double least = 1e-15;
         const Eigen::VectorXd roots = eigen.eigenvalues().cwiseMax(least).cwiseSqrt();
         Eigen::VectorXd top = (eigen.eigenvectors().transpose() * gradient).cwiseQuotient(roots);
@@ -182,7 +182,7 @@ private:
         RowMatrix scaled = hessian;
         scaled.array().colwise() /= scale.array();
         scaled.array().rowwise() /= scale.transpose().array();
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen{Eigen::MatrixXd(scaled)};
         constexpr double least = 1e-9;
         RowMatrix result = eigen.eigenvectors() *
                            eigen.eigenvalues().cwiseAbs().cwiseMax(least).asDiagonal() *

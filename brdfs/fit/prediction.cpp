@@ -213,8 +213,8 @@ double simultaneousFactor(const FitResult& fit, std::span<const DirectionPair> p
     Eigen::VectorXd scale = covariance.diagonal().cwiseMax(0).cwiseSqrt();
     Eigen::VectorXd inverse = scale;
     for (double& s : inverse) s = s > 0 ? 1 / s : 0;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(inverse.asDiagonal() * covariance *
-                                                               inverse.asDiagonal());
+    const Eigen::MatrixXd correlations = inverse.asDiagonal() * covariance * inverse.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlations);
     const Eigen::MatrixXd root = scale.asDiagonal() * eigen.eigenvectors() *
                                  eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
     Eigen::MatrixXd normal(n, static_cast<Eigen::Index>(draws));

@@ -47,8 +47,8 @@ std::vector<double> scanDegrees(const std::vector<ScanSums>& scans, const Eigen:
     std::vector<Sums> sums(static_cast<std::size_t>(count),
                            {0, 0, Eigen::MatrixXd::Zero(b.rows(), b.rows())});
     for (const ScanSums& scan : scans) {
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(root.transpose() * scan.matrix *
-                                                                   root);
+        const Eigen::MatrixXd part = root.transpose() * scan.matrix * root;
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(part);
         const Eigen::VectorXd shares = eigen.eigenvalues().cwiseMax(0);
         const Eigen::VectorXd freedom = (1 - shares.array()).max(leastFreedom);
         const Eigen::MatrixXd inner = eigen.eigenvectors().transpose() * b;

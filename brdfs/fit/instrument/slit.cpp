@@ -109,7 +109,8 @@ std::vector<double> slitMatrix(const Slit& slit, const Channels& channels) {
     constexpr double least = 0.1;
     const auto n = static_cast<Eigen::Index>(count);
     const Eigen::Map<const Square> readings(matrix.data(), n, n);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(readings.transpose() * readings);
+    const Eigen::MatrixXd squares = readings.transpose() * readings;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(squares);
     const double smallest = std::sqrt(std::max(eigen.eigenvalues()(0), 0.0));
     if (smallest < least)
         throw NumericError(fmt::format(

@@ -8,6 +8,9 @@
 
 #include <fmt/format.h>
 
+template class nlohmann::basic_json<>;
+template class nlohmann::basic_json<nlohmann::ordered_map>;
+
 namespace hshfit::inline files {
 
 using Json = nlohmann::json;

@@ -12,6 +12,10 @@
 
 #include <nlohmann/json.hpp>
 
+// Compiled once, in json_fields.cpp.
+extern template class nlohmann::basic_json<>;
+extern template class nlohmann::basic_json<nlohmann::ordered_map>;
+
 namespace hshfit::inline files {
 
 /// The largest magnitude that JsonFields takes: products of three such numbers are finite.

@@ -95,7 +95,8 @@ Similarity similarityOf(const LogSpace& space, std::span<const LogMaterial> mate
                 (points.col(static_cast<Index>(i)) - points.col(static_cast<Index>(k))).norm();
     });
     points.colwise() -= points.rowwise().mean().eval();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(points * points.transpose());
+    const Eigen::MatrixXd covariance = points * points.transpose();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
     const Eigen::MatrixXd axes = solver.eigenvectors().rightCols(2);  // by rising variance
     const Eigen::MatrixXd coordinates = axes.transpose() * points;
     for (Index m = 0; m < coordinates.cols(); ++m)
