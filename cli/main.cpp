@@ -9,6 +9,14 @@
 #include <vector>
 
 int main(int argc, char** argv) {
+#ifdef HSHFIT_NEEDS_AVX2  // HSHFIT_INSTRUCTION_SETS=own
+    if (!__builtin_cpu_supports("avx2")) {
+        hshfit::cli::printMessage(
+            "this program was built for processors with AVX2, which this one has not; build it "
+            "here, or with -DHSHFIT_INSTRUCTION_SETS=all");
+        return 1;
+    }
+#endif
     hshfit::cli::occupyStandardStreams();
     hshfit::removeTemporariesOnSignals();
     hshfit::cli::endUncaughtInOneLine();

@@ -22,6 +22,27 @@ function(hshfit_vector_sources folder property value)
   endforeach()
 endfunction()
 
+# hshfit_own_instructions(FOLDER): compiles the vector sources of FOLDER and below once, for AVX2 if
+# this machine has it. The program then says so where it is started on one that has not.
+function(hshfit_own_instructions folder)
+  include(CheckCXXSourceRuns)
+  check_cxx_source_runs("int main() {
+    return !(__builtin_cpu_supports(\"avx2\") && __builtin_cpu_supports(\"fma\") &&
+             __builtin_cpu_supports(\"bmi2\") && __builtin_cpu_supports(\"pclmul\") &&
+             __builtin_cpu_supports(\"aes\"));
+  }" HSHFIT_HAS_AVX2)
+  hshfit_vector_sources(${folder} COMPILE_DEFINITIONS HSHFIT_OWN_SET)
+  if(HSHFIT_HAS_AVX2)
+    # All that Highway asks for before it takes AVX2; beside the options of hshfit_unfused.
+    hshfit_vector_sources(${folder} COMPILE_FLAGS
+                          "-mavx2 -mfma -mbmi -mbmi2 -mf16c -mpclmul -maes")
+    hshfit_vector_sources(${folder} SKIP_PRECOMPILE_HEADERS ON)
+    if(TARGET hshfit)
+      target_compile_definitions(hshfit PRIVATE HSHFIT_NEEDS_AVX2)
+    endif()
+  endif()
+endfunction()
+
 # hshfit_unfused(FILE…): sources in which products and sums are fused only explicitly, so that
 # results are bitwise identical in every vector width. GCC 12 forgets the option in functions for
 # other instruction sets after a precompiled header.

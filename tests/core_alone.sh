@@ -1,7 +1,7 @@
 #!/bin/sh
 # Builds the core of the program, without its wings, into build-core and checks what it says of
-# them. Objects are those of the whole program in build, which the compiler cache has, if it lies
-# beside this folder.
+# them, as ./run demo does. Most objects are those of the whole program in build, which the compiler
+# cache has, if it lies beside this folder.
 set -eu
 cd "$(dirname "$0")/.."
 folder=build-core
@@ -13,7 +13,8 @@ fail() {
 # As in the presets (CMakePresets.json), which name the folder build.
 export CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=true CCACHE_SLOPPINESS=pch_defines,time_macros
 cmake --preset release -B "$folder" --log-level=WARNING -DHSHFIT_WINGS=core -DHSHFIT_TESTS=OFF \
-    -DHSHFIT_BENCH=OFF -DHSHFIT_FIGURES=OFF -DHSHFIT_PYTHON=OFF -DHSHFIT_MPI=OFF >/dev/null
+    -DHSHFIT_BENCH=OFF -DHSHFIT_FIGURES=OFF -DHSHFIT_PYTHON=OFF -DHSHFIT_MPI=OFF \
+    -DHSHFIT_INSTRUCTION_SETS=own >/dev/null
 cmake --build "$folder" --parallel "$(nproc)" --target hshfit
 hshfit=$folder/hshfit
 work=$folder/tried
