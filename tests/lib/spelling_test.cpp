@@ -50,6 +50,8 @@ TEST(Spelling, BeginningsCountAndDistantNamesDoNot) {
     constexpr std::array known{"zernike", "hsh", "sh"};
     EXPECT_EQ(spelling::nearest("zer", known), "zernike");
     EXPECT_EQ(spelling::nearest("hhs", known), "hsh");
+    EXPECT_EQ(spelling::nearest("HSH", known), "hsh");
+    EXPECT_EQ(spelling::nearest("Zernicke", known), "zernike");
     EXPECT_EQ(spelling::nearest("wavelet", known), "");
     EXPECT_EQ(spelling::question("wavelet", known), "");
     // Edits by hand: kitten, sitten, sittin, sitting.
