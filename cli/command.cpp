@@ -25,6 +25,7 @@
 #include <cstdio>
 #include <cstring>
 #include <mutex>
+#include <optional>
 
 namespace hshfit::cli {
 
@@ -159,11 +160,13 @@ void printList(std::string_view message, const std::vector<std::string>& lines, 
 struct Progress::State {
     using Clock = std::chrono::steady_clock;
     std::string what;
+    std::optional<Clock::duration> silence;  ///< between lines that stay; none on a terminal
     std::mutex mutex;
     Clock::time_point start = Clock::now(), shown = start;
     bool visible = false;
 
-    explicit State(const std::string& text) : what(shortened(printable(text), 40)) {}
+    State(const std::string& text, std::optional<Clock::duration> between)
+        : what(shortened(printable(text), 40)), silence(between) {}
     State(const State&) = delete;
     State& operator=(const State&) = delete;
     ~State() { clear(); }
@@ -178,17 +181,33 @@ struct Progress::State {
         const auto now = Clock::now();
         if (now - shown < interval || done == 0) return;
         shown = now;
-        visible = true;
         const double seconds = std::chrono::duration<double>(now - start).count();
         const double share = static_cast<double>(done) / static_cast<double>(total);
+        const double left = seconds * (1 - share) / share;
+        if (silence) {
+            // Between all parts of the work, which may be short.
+            static std::mutex line;
+            static Clock::time_point said = start;
+            const std::lock_guard one(line);
+            if (now - said < *silence) return;
+            said = now;
+            const std::string text = fmt::format("{}: {} of {} after {:.0f} s, {:.0f} s left", what,
+                                                 done, total, seconds, left);
+            writeError(messageLine("hshfit: ", text));
+            return;
+        }
+        visible = true;
         writeError(fmt::format("\r\x1b[K{}  {}/{}  {:.3g}/s  {:.0f} s left", what, done, total,
-                               static_cast<double>(done) / seconds, seconds * (1 - share) / share));
+                               static_cast<double>(done) / seconds, left));
     }
 };
 
-Progress::Progress(const Globals& globals, const std::string& what) {
-    if (globals.quiet || !isatty(STDERR_FILENO)) return;
-    state_ = std::make_shared<State>(what);
+Progress::Progress(const Globals& globals, const std::string& what,
+                   std::chrono::milliseconds silence) {
+    if (globals.quiet) return;
+    state_ = std::make_shared<State>(what, isatty(STDERR_FILENO)
+                                               ? std::nullopt
+                                               : std::optional<State::Clock::duration>(silence));
 }
 
 Progress::~Progress() {

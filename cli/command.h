@@ -7,6 +7,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <chrono>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -55,11 +56,13 @@ void occupyStandardStreams();
 /// Nothing is printed from now on, on standard output or standard error.
 void closeOutput();
 
-/// A progress line on standard error: the task, the share done, the rate and the time left.
-/// Nothing is shown with --quiet or if standard error is no terminal.
+/// A progress line on standard error: the task, the share done, the rate and the time left. Where
+/// standard error is no terminal, such as the log of a batch, a line after every `silence`. Nothing
+/// is shown with --quiet.
 class Progress {
 public:
-    Progress(const Globals& globals, const std::string& what);
+    Progress(const Globals& globals, const std::string& what,
+             std::chrono::milliseconds silence = std::chrono::minutes(1));
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
