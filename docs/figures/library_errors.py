@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """library_errors.py PROGRAM TABLES OUT [--divisions N] [--halfway MATERIALS] [--few]
 
-The table of docs/explanation/library_of_materials.md: the errors of materials that took no part
+The table of docs/results/libraries.md: the errors of materials that took no part
 in a library, over random divisions of the tables or planes of a folder (MERL layout), beside
 halfway forms. A library is learned of each table alone, once; those of a division are merged.
 Prints medians and the share of new materials at 120 bytes within the error of halfway 8,4,3, by
