@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The tables of docs/reference/shaders.md: forms as shaders, and a published network by the same
+"""The tables of docs/results/shaders.md: forms as shaders, and a published network by the same
 rules.
 
     docs/figures/form_shaders.py build FILE.json…
