@@ -112,6 +112,16 @@ matches '(TEST|TEST_F|TEST_P)\(.*DISABLED_|^ *#if 0' '*.h' '*.cpp' | rule 'switc
 tracked '*.h' '*.cpp' | grep -E '(^|[/_])(utils?|common|helpers?|manager)[_.]' |
     rule 'names that say nothing' || true
 
+# Markdown ends a table at an empty line: rows below one are text, unless a head and a line of dashes
+# come first.
+tracked '*.md' | xargs -r awk '
+    FNR == 1 { row = ""; before = ""; fenced = 0 }
+    row != "" && $0 !~ /^\|[ :-]*-[-| :]*$/ { print row }
+    { row = "" }
+    /^ *```/ { fenced = !fenced }
+    !fenced && /^\| / && before == "" { row = FILENAME ":" FNR ": " substr($0, 1, 60) }
+    { before = $0 }' | rule 'rows of a table stand below its head without an empty line'
+
 tracked '*.json' | python3 -c '
 import json, sys
 for path in sys.stdin.read().split("\n"):
