@@ -23,7 +23,7 @@ constexpr OptionRow formRows[] = {
               "kilobyte)"}
         .takes({.syntax = Syntax::list}),
     OptionRow{"reciprocal", at<&FormOptions::reciprocal>,
-              "With --form basis: the symmetric half only"},
+              "With --form basis or halfway: the symmetric half only"},
     OptionRow{
         "split", at<&FormOptions::split>,
         "diffuse, or a BRDF or FIT.json: kept exactly beside the coefficients of the remainder"}

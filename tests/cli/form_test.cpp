@@ -35,6 +35,7 @@ const std::vector<Case> cases = {
     {"both_rank", "--form basis --order 9 --rank 3", "basis"},
     {"both_keep", "--form basis --keep 300 --precision unorm16", "basis"},
     {"halfway", "--form halfway --halfway 8,4,2 --precision half", "halfway"},
+    {"halfway_reciprocal", "--form halfway --halfway 8,4,2 --reciprocal", "halfway"},
 };
 
 class Form : public Cli {
@@ -53,6 +54,10 @@ protected:
         return Json::parse(answer.out)["values"].get<std::vector<double>>();
     }
 };
+
+TEST_F(Form, HelpNamesTheFormsThatReciprocalIsFor) {
+    EXPECT_NE(run("help project").out.find("With --form basis or halfway"), std::string::npos);
+}
 
 TEST_F(Form, EveryOneIsWrittenReadEvaluatedAndExported) {
     for (const Case& c : cases) {
