@@ -48,7 +48,7 @@ const shots = [
   {
     name: 'tutorial-viewer',
     spec: basename(measured),
-    form: ['--form', 'halfway', '--halfway', '8,4,2', '--precision', 'half'],
+    form: ['--form', 'halfway', '--precision', 'half'],
     view: 'frames=4&cycles=12',
   },
   ...[
@@ -58,7 +58,7 @@ const shots = [
   ].map((shot) => ({
     ...shot,
     spec: basename(measured),
-    form: ['--form', 'halfway', '--halfway', '12,6,3', '--precision', 'half'],
+    form: ['--form', 'halfway', '--precision', 'half'],
   })),
 ];
 
