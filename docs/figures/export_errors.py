@@ -11,7 +11,7 @@ import subprocess
 import sys
 import tempfile
 
-COLUMNS = ("material", "map", "number", "bytes", "truncation", "interpolation", "quantisation",
+COLUMNS = ("material", "map", "number", "bytes", "truncation", "interpolation", "storage",
            "total", "mean log")
 
 
@@ -40,7 +40,7 @@ def main(program, specs):
         for spec in specs:
             for outgoing in ("32x32", "64x64"):
                 subprocess.run([program, "project", spec, "--rgb", "--quiet", "--order", "7",
-                                "--outgoing", outgoing, "-o", folder + "/c.json"],
+                                "--outgoing", outgoing, "--force", "-o", folder + "/c.json"],
                                check=True, stdout=subprocess.DEVNULL)
                 for number in ("float16", "unorm8"):
                     print(row(cells(spec, exported(program, folder, number))), flush=True)

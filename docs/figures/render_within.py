@@ -76,7 +76,7 @@ def main():
                 rendered, lines = answer(
                     arguments.program, "render", material, "--cosine", "--order", str(order),
                     "--light", light.format(shared=arguments.shared), "--size", arguments.size,
-                    "--samples", "1", "--tolerance", arguments.tolerance, "-o", output)
+                    "--samples", "1", "--tolerance", arguments.tolerance, "--force", "-o", output)
                 picture = rendered["pictures"][1]
                 l2, largest = 100 * picture["relative_l2"], 100 * picture["maximum"]
                 cells.append(f"{l2:.2f} ({largest:.1f})")
