@@ -115,7 +115,10 @@ void RglBrdf::Block::set(const RglTables& tables, Direction wo, const DirectionB
 RglBrdf::RglBrdf(std::span<const unsigned char> bytes, std::string name, RglReading reading)
     : name_(std::move(name)) {
     tables_ = RglTables::load(TensorFile(bytes, name_));
-    if (reading == RglReading::smooth) tables_.smooth();
+    if (reading == RglReading::smooth) {
+        tables_.smooth();
+        name_ += ":reading=smooth";
+    }
     laws_.nonNegative = true;
     laws_.isotropic = tables_.isotropic;
     laws_.mirrorSymmetric = tables_.reduction == 4;

@@ -67,7 +67,8 @@ enum class RglReading { published, smooth };
 /// independently.
 class RglBrdf : public MeasuredBrdf {
 public:
-    /// `name` is the path of the file, for messages. Throws InputError for invalid bytes.
+    /// `name` is the path of the file; name() adds a reading other than the published one to it.
+    /// Throws InputError for invalid bytes.
     RglBrdf(std::span<const unsigned char> bytes, std::string name,
             RglReading reading = RglReading::published);
     static std::unique_ptr<RglBrdf> open(const std::string& path,

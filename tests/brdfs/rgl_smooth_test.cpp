@@ -1,6 +1,7 @@
 // The smooth reading of RGL files, on the measured car paint whose normals have a ripple and whose
 // slice at the normal has azimuths.
 
+#include <brdfs/catalog.h>
 #include <brdfs/measured/rgl.h>
 #include <hshfit/brdf/brdf.h>
 #include <hshfit/projection/albedo.h>
@@ -89,6 +90,18 @@ double ripple(const RglBrdf& brdf) {
 
 TEST_F(RglSmooth, TakesOutTheRippleOfNormals) {
     EXPECT_LT(ripple(*ibiza(RglReading::smooth)), ripple(*ibiza(RglReading::published)) / 3);
+}
+
+/// Files of coefficients and advice name their source by it.
+TEST_F(RglSmooth, NameOpensTheSameReading) {
+    const auto smooth = ibiza(RglReading::smooth);
+    const auto again = open(smooth->name());
+    EXPECT_EQ(again->name(), smooth->name());
+    for (const double theta : {0.0, 7.0, 23.0}) {
+        const Direction wi = directionFromAngles(radians(theta), 0);
+        const Direction wo = directionFromAngles(radians(20), 2);
+        EXPECT_EQ(evaluate(*again, wi, wo), evaluate(*smooth, wi, wo)) << theta;
+    }
 }
 
 /// The smooth reading differs from the published one between vertices alone: what all light
