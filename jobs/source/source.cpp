@@ -103,13 +103,12 @@ std::unique_ptr<Brdf> openTexel(const std::string& spec) {
     throw UsageError(notBuilt(path, Wing::maps));
 }
 
-/// The bytes of files that a sidecar names beside itself.
-std::size_t bytesBeside(const std::string& sidecar, std::initializer_list<std::string> names) {
+/// The bytes of those of these files that are there.
+std::size_t bytesOf(std::initializer_list<std::string> paths) {
     std::size_t bytes = 0;
-    for (const std::string& name : names) {
+    for (const std::string& path : paths) {
         std::error_code missing;
-        const auto path = std::filesystem::path(sidecar).parent_path() / name;
-        const std::uintmax_t size = name.empty() ? 0 : std::filesystem::file_size(path, missing);
+        const std::uintmax_t size = path.empty() ? 0 : std::filesystem::file_size(path, missing);
         if (!missing) bytes += size;
     }
     return bytes;
@@ -124,15 +123,15 @@ MapFacts factsOfMap(const std::string& path) {
     if (isFilteredSidecar(path)) {
         const FilteredSidecar map = readFilteredSidecar(path);
         take(map.form, map.levels);
-        facts.bytes = bytesBeside(path, {map.texture, map.harmonics});
+        facts.bytes = bytesOf({map.texture, map.harmonics});
     } else if (isLibrarySidecar(path)) {
         const LibrarySidecar map = readLibrarySidecar(path);
         take("library", map.levels);
-        facts.bytes = bytesBeside(path, {map.texture, map.library});
+        facts.bytes = bytesOf({map.texture, map.library});
     } else {
         const MapSidecar map = readMapSidecar(path);
         take(map.form, map.levels);
-        facts.bytes = bytesBeside(path, {map.texture});
+        facts.bytes = bytesOf({map.texture});
     }
     return facts;
 }

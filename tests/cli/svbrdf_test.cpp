@@ -148,6 +148,8 @@ TEST_F(Svbrdf, MapsAreDescribedAndNameTheirTexel) {
         EXPECT_EQ(facts["levels"][3], Json({{"width", 1}, {"height", 1}}));
         const char* texels = file == map ? "out/material.ktx2" : "gpu/material.map.ktx2";
         EXPECT_EQ(facts["bytes"], std::filesystem::file_size(path(texels)));
+        const Answer near = run("info --json " + std::filesystem::relative(file).string());
+        EXPECT_EQ(Json::parse(near.out)["map"], facts);
         EXPECT_NE(run("info " + file).out.find("8 x 4 texels, 4 levels"), std::string::npos);
         const std::string remark = "texel 0,0 of level 0; :x=…,y=… names others";
         const std::string pair = " --wi 30,0 --wo 0,0";
