@@ -69,9 +69,12 @@ std::string inPlainWords(const CLI::App& app, const std::string& message) {
     if (between(message, "A subcommand is required", ""))
         return "no command is given, as in hshfit list models";
     for (const std::string_view many : {" was", "s were"})
-        if (const auto said =
-                between(message, fmt::format("The following argument{} not expected: ", many), ""))
-            return fmt::format("unexpected '{}'", *said);
+        if (const auto said = between(
+                message, fmt::format("The following argument{} not expected: ", many), "")) {
+            const auto left = app.remaining(true);  // CLI11's message has them from last to first
+            return fmt::format("unexpected '{}'",
+                               left.empty() ? *said : CLI::detail::join(left, " "));
+        }
     constexpr std::string_view equals = " = ", colon = ": ";
     if (const auto said = between(message, "Could not convert: ", "")) {
         const std::size_t middle = said->find(equals);

@@ -69,6 +69,8 @@ TEST_F(Cli, UsageErrorsNameWhatIsValid) {
     expectError("info lambert:kd=.2/.3/.4,5", 2, "a number has a point", 0);
     expectError("project lambert -o", 2, "--output: a value is missing; see", 0);
     expectError("info lambert -q", 2, "unexpected '-q'; see hshfit help info", 0);
+    expectError("list presets acrylic of three paints", 2,
+                "unexpected 'of three paints'; see hshfit help list", 0);
     expectError("-x", 2, "no command is given", 0);
     expectError("export x.json -o " + path("y") + " --sampling --no-sampling", 2,
                 "--sampling and --no-sampling exclude one another; give one of them", 0);
