@@ -56,7 +56,18 @@ void addColumns(std::span<const double> c, const double* columns, std::size_t co
         return;
     }
     std::fill_n(out, count, 0.0);
-    for (std::size_t i = 0; i < c.size(); ++i) {
+    // Four columns for each reading and writing of `out`, which is half of the time otherwise.
+    std::size_t i = 0;
+    for (; i + 4 <= c.size(); i += 4) {
+        const double* const a = columns + i * count;
+        const double* const b = a + count;
+        const double* const d = b + count;
+        const double* const e = d + count;
+        for (std::size_t k = 0; k < count; ++k) {
+            out[k] = out[k] + c[i] * a[k] + c[i + 1] * b[k] + c[i + 2] * d[k] + c[i + 3] * e[k];
+        }
+    }
+    for (; i < c.size(); ++i) {
         const double* const column = columns + i * count;
         for (std::size_t k = 0; k < count; ++k) out[k] += c[i] * column[k];
     }
