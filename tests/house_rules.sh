@@ -112,8 +112,9 @@ matches '(TEST|TEST_F|TEST_P)\(.*DISABLED_|^ *#if 0' '*.h' '*.cpp' | rule 'switc
 tracked '*.h' '*.cpp' | grep -E '(^|[/_])(utils?|common|helpers?|manager)[_.]' |
     rule 'names that say nothing' || true
 
-# Markdown ends a table at an empty line: rows below one are text, unless a head and a line of dashes
-# come first.
+# Markdown ends a table at an empty line: rows below one are text, unless a head and a line of
+# dashes come first.
+# shellcheck disable=SC2016  # fields of awk
 tracked '*.md' | xargs -r awk '
     FNR == 1 { row = ""; before = ""; fenced = 0 }
     row != "" && $0 !~ /^\|[ :-]*-[-| :]*$/ { print row }
