@@ -73,6 +73,7 @@ int run(const std::vector<std::string>& words, Outputs outputs) {
     app.parse_complete_callback([&] {
         if (globals.json && isOutputTaken())
             throw UsageError("--json: the answer and the file cannot both go to standard output");
+        for (const CLI::App* command : app.get_subcommands()) refuseEmptyValues(*command);
         if (globals.threads > 0) {
             auto limit = std::make_unique<tbb::global_control>(
                 tbb::global_control::max_allowed_parallelism, globals.threads);

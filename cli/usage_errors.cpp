@@ -1,7 +1,9 @@
 #include "usage_errors.h"
 
 #include "command_table.h"
+#include "option_rows.h"
 
+#include <hshfit/error.h>
 #include <hshfit/spelling.h>
 
 #include <fmt/format.h>
@@ -111,6 +113,17 @@ std::string usageMessage(const CLI::App& app, const CLI::Error& error,
     if (message.empty()) message = error.what();
     std::ranges::replace(message, '\n', ' ');
     return message;
+}
+
+void refuseEmptyValues(const CLI::App& command) {
+    for (const CLI::Option* option : command.get_options()) {
+        if (option->count() == 0 || (option->get_positional() && !isWritten(command, *option)))
+            continue;
+        if (std::ranges::count(option->results(), std::string()) > 0)
+            throw UsageError(fmt::format("{}: the value of {} is empty; give one, or leave {} out",
+                                         command.get_name(), option->get_name(),
+                                         option->get_name()));
+    }
 }
 
 std::string withHelp(const std::string& message, const std::vector<std::string>& words) {

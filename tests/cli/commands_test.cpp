@@ -50,6 +50,16 @@ TEST_F(Cli, ConvertStatesTheLossOfFilesForPbrt) {
     expectError("convert lambert " + path("c.bsdf") + " --to rgl:for=mitsuba", 2, "pbrt", 2);
 }
 
+/// As of a variable of a shell that is not set.
+TEST_F(Cli, EmptyValuesAreRefused) {
+    expectError("project lambert -o ''", 2, "project: the value of --output is empty", 0);
+    expectError("convert lambert ''", 2, "convert: the value of OUT is empty", 0);
+    expectError("manual -o ''", 2, "--output is empty", 0);
+    expectError("fit lambert --model lambert --sigma ''", 2, "--sigma is empty; give one", 0);
+    expectError("compare lambert lambert --figures=", 2, "--figures", 0);
+    expectError("info ''", 2, "empty BRDF specification", 0);
+}
+
 TEST_F(Cli, UsageErrorsNameWhatIsValid) {
     expectError("frobnicate", 2, "; see hshfit help", 0);
     expectError("tradeof lambert", 2, "did you mean 'tradeoff'", 0);
