@@ -83,18 +83,15 @@ std::unique_ptr<Brdf> openComparable(const Brdf& input, const std::string& outpu
     const auto isSpectral = [](const Brdf& brdf) {
         return brdf.channels().kind == Channels::Kind::spectral;
     };
-    if (isSpectral(*read) && !isSpectral(input)) return asRgb(std::move(read));
+    const bool isOneNumber = read->channels().count() == 1 && input.channels().count() == 1;
+    if (isSpectral(*read) && !isSpectral(input) && !isOneNumber) return asRgb(std::move(read));
     return read;
 }
 
 /// Reads the file back and compares it with the BRDF that it was written from.
-ConversionLoss measureLoss(const Brdf& input, const brdfs::Writer& writer,
-                           const std::string& output, const brdfs::Parameters& parameters,
-                           const ConvertOptions& options, const Listener& listener) {
-    if (!writer.readBack) {
-        throw UsageError(fmt::format("{}: {} is for other programs to read; nothing here reads it",
-                                     Setting{"ConvertOptions::measureLoss"}, writer.name));
-    }
+ConversionLoss measureLoss(const Brdf& input, const std::string& output,
+                           const brdfs::Parameters& parameters, const ConvertOptions& options,
+                           const Listener& listener) {
     const auto read = openComparable(input, output, parameters);
     const OutgoingSet outgoing =
         outgoingOrDefault(options.outgoing, input.laws().isotropic ? *read : input);
@@ -144,7 +141,7 @@ Converted converted(const Brdf& brdf, const brdfs::RepairedBrdf* repaired,
     result.bytes = error ? 0 : bytes;
     if (repaired) result.repairs = Repairs{repaired->evaluated(), repaired->counts()};
     if (options.measureLoss) {
-        result.loss = measureLoss(brdf, writer, output, parameters, options, listener);
+        result.loss = measureLoss(brdf, output, parameters, options, listener);
     }
     if (writer.readBack && !isStandardOutput(output)) stateError(brdf, output, parameters, result);
     brdf.checkIntact();
@@ -170,6 +167,10 @@ const brdfs::Writer& checkedWriter(const ConvertOptions& options, const std::str
     if (options.measureLoss && isStandardOutput(output))
         throw UsageError(fmt::format("{}: standard output is not read back",
                                      Setting{"ConvertOptions::measureLoss"}));
+    if (options.measureLoss && !writer.readBack)
+        throw UsageError(fmt::format("{}: {} is for other programs to read; nothing here reads it",
+                                     Setting{"ConvertOptions::measureLoss"}, writer.name));
+    if (!options.outgoing.empty()) OutgoingSet::parse(options.outgoing);
     return writer;
 }
 

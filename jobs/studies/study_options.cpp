@@ -53,7 +53,8 @@ constexpr OptionRow convertRows[] = {
         .inPython("measure_loss"),
     OptionRow{"outgoing", at<&ConvertOptions::outgoing>,
               "Outgoing directions of the loss: WxH, N or THETA,PHI"}
-        .takes({.syntax = Syntax::outgoing}),
+        .takes({.syntax = Syntax::outgoing})
+        .with("report-loss"),
     OptionRow{"repair", at<&ConvertOptions::repairs>,
               "Repairs before writing, separated by commas, or all; `hshfit help formats` lists "
               "them"}

@@ -50,6 +50,23 @@ TEST_F(Cli, ConvertStatesTheLossOfFilesForPbrt) {
     expectError("convert lambert " + path("c.bsdf") + " --to rgl:for=mitsuba", 2, "pbrt", 2);
 }
 
+/// One number is one number, whether it is called grey or has the wavelength of the format.
+TEST_F(Cli, ConvertStatesTheLossOfGreyAtOneWavelength) {
+    const Answer answer = run("convert lambert:kd=.5 " + path("a.xompt") +
+                              " --to xompt:theta=19,last=89.9 --report-loss --json");
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    EXPECT_TRUE(keepsSchema(answer.out, "convert"));
+    const std::size_t error = answer.out.find("\"error\": ");
+    ASSERT_NE(error, std::string::npos) << answer.out;
+    EXPECT_LT(std::stod(answer.out.substr(error + 9)), 0.1);
+}
+
+TEST_F(Cli, ConvertChecksTheDirectionsOfTheLossBeforeItWrites) {
+    expectError("convert lambert " + path("a.alta") + " --report-loss --outgoing nan", 2,
+                "outgoing directions 'nan'", 0);
+    expectError("convert lambert " + path("a.alta") + " --outgoing 4", 2, "--report-loss", 0);
+}
+
 /// As of a variable of a shell that is not set.
 TEST_F(Cli, EmptyValuesAreRefused) {
     expectError("project lambert -o ''", 2, "project: the value of --output is empty", 0);
