@@ -184,10 +184,12 @@ std::vector<float> visibleNormals(const Plane& ndf, const Direction& wi, double 
             if (seen > 0) ++seenCount, sum += densities.back();
         }
     }
+    // On the coarsest grids all nodes that are seen may be at the pole, where densities are 0.
     std::vector<float> values(densities.size(), 0.0F);
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (densities[i] < 0) continue;
-        values[i] = static_cast<float>((1 - share) * densities[i] / sum + share / seenCount);
+        values[i] = static_cast<float>(
+            sum > 0 ? (1 - share) * densities[i] / sum + share / seenCount : 1 / seenCount);
     }
     return values;
 }
