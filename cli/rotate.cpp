@@ -35,7 +35,7 @@ void runRotate(const RotateArguments& arguments, const Globals& globals) {
                          {"method", methodName(done.method)},
                          {"lost_energy", done.lostEnergy},
                          {"error", done.error}};
-        if (done.method == HemisphereMethod::throughSh) document["bands"] = done.bands;
+        if (done.bands > 0) document["bands"] = done.bands;
         printJson(document);
         return;
     }

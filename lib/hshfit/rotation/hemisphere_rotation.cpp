@@ -100,8 +100,7 @@ struct HemisphereRotation::Parts {
 
     /// True where the moments over the lune are the result.
     bool deletesDigon(double beta) const {
-        return options.method == HemisphereMethod::exact && orthonormal &&
-               !(beta == 0 && basis->name() != "sh");
+        return options.method == HemisphereMethod::exact && orthonormal && beta != 0;
     }
 
     Matrix exact(double beta, const Matrix& c) const {
@@ -169,6 +168,7 @@ struct HemisphereRotation::Parts {
     }
 
     Matrix tilt(double beta, const Matrix& c, int* bands = nullptr) const {
+        if (beta == 0) return c;
         switch (options.method) {
             case HemisphereMethod::exact:
                 return exact(beta, c);

@@ -46,8 +46,8 @@ struct HemisphereRotated {
 };
 
 /// Rotates functions on the hemisphere, given by coefficients: f(R^-1 d) where R^-1 d is above the
-/// horizon, 0 elsewhere, projected onto the same basis again (lsosh: fitted). For `sh` that is the
-/// part above the horizon; rotate whole spheres by ShRotation.
+/// horizon, 0 elsewhere, projected onto the same basis again (lsosh: fitted). A tilt of `sh` takes
+/// the part of the sum above the horizon; rotate whole spheres by ShRotation.
 /// Exact: 1e-12, O(order^4) operations a vector: 10 s of CPU at order 100 and 30 degrees. Throws
 /// UsageError for a basis or an angle that the method does not have, and for an order above 150
 /// (table: 32).
