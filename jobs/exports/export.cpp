@@ -95,6 +95,13 @@ struct Exportable {
 };
 Exportable coefficientsOf(const Representation& stored, const std::string& path,
                           const ExportOptions& options, const Listener& listener) {
+    const ExportOptions usual;
+    if (stored.kind() != Representation::Kind::halfway &&
+        (options.basis != usual.basis || options.order != usual.order))
+        throw UsageError(
+            fmt::format("basis and order are for the form halfway; {} has {} of order "
+                        "{}, which an export keeps",
+                        path, stored.head.basis, stored.head.order));
     ExpandOptions expansion{.basis = options.basis, .order = options.order};
     std::optional<OutgoingSet> outgoing;
     if (!options.outgoing.empty()) outgoing = OutgoingSet::parse(options.outgoing);

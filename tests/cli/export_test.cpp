@@ -309,5 +309,17 @@ TEST_F(ExportForm, OptionsOfOutgoingCoefficientsAreRefused) {
     }
 }
 
+/// A file of HSH gave HSH, whatever basis was asked for.
+TEST_F(ExportForm, BasisAndOrderAreOfTheFormHalfwayAlone) {
+    ASSERT_EQ(run("project lambert --order 3 --outgoing 8 -o " + path("plain.json")).code, 0);
+    for (const char* option : {" --basis sh", " --order 2", " --outgoing 4 --basis sh"}) {
+        const Answer answer =
+            run("export " + path("plain.json") + " --target bin -o " + path("out") + option);
+        EXPECT_EQ(answer.code, 2) << option;
+        EXPECT_NE(answer.err.find("has hsh of order 3, which an export keeps"), std::string::npos)
+            << answer.err;
+    }
+}
+
 }  // namespace
 }  // namespace hshfit::test
