@@ -21,6 +21,7 @@ TEST_F(Cli, LtcWritesEveryForm) {
         EXPECT_GT(fs::file_size(output.get<std::string>()), 0u);
     }
     EXPECT_TRUE(keepsSchema(read(path("t.json")), "ltc"));
+    EXPECT_TRUE(keepsSchema(answer.out, "ltc_answer"));
     const Json table = Json::parse(read(path("t.json")));
     EXPECT_EQ(table["summary"]["mean_error"], json["mean_error"]);
     EXPECT_EQ(table["values"][3], 1);
@@ -57,6 +58,7 @@ TEST_F(Cli, GaussiansAreABrdf) {
     ASSERT_EQ(answer.code, 0) << answer.err;
     const Json json = Json::parse(answer.out);
     EXPECT_TRUE(keepsSchema(read(path("g.json")), "gaussians"));
+    EXPECT_TRUE(keepsSchema(answer.out, "gaussians_answer"));
     // The command that compares BRDFs finds the same error from the file.
     const Answer compared = run("compare ggx:alpha=.3 " + path("g.json") +
                                 " --outgoing 3 --metrics relative-l2-cosine --json");

@@ -70,6 +70,16 @@ TEST_F(Cli, SampleIsTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(read(path("a.csv")), read(path("b.csv")));
 }
 
+/// The shares of parts that are left out go to the others, which stay at most 1.
+TEST_F(Cli, SampleStatesSharesOfAtMostOne) {
+    for (const std::string spec : {"phong:exponent=1,kd=.5,ks=.001", "eon:roughness=.5"}) {
+        const Answer answer =
+            run("sample " + spec + " --count 0 --trials 1 --elevations 12 --json");
+        ASSERT_EQ(answer.code, 0) << answer.err;
+        EXPECT_TRUE(keepsSchema(answer.out, "sample")) << spec;
+    }
+}
+
 TEST_F(Cli, SampleSaysWhereNothingIsReflected) {
     const Answer answer = run("sample lambert:kd=0 --count 1 --elevations 1 --trials 10 --json");
     ASSERT_EQ(answer.code, 0) << answer.err;

@@ -43,7 +43,7 @@ MixtureRow rowOf(const std::vector<Target>& targets, const SamplerList& parts, d
     double left = 1;
     for (std::size_t k = 1; k < row.shares.size(); ++k)
         if (row.shares[k] < negligible) left -= std::exchange(row.shares[k], 0.0);
-    for (double& share : row.shares) share /= left;
+    for (double& share : row.shares) share = std::min(share / left, 1.0);
     return row;
 }
 
