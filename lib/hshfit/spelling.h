@@ -17,8 +17,8 @@
 
 namespace hshfit::spelling {
 
-/// The least number of insertions, deletions and replacements that turns one into the other, whatever
-/// their case.
+/// The least number of insertions, deletions and replacements that turns one into the other, where
+/// capitals count as small letters.
 inline std::size_t distance(std::string_view a, std::string_view b) {
     const auto same = [](unsigned char one, unsigned char other) {
         return std::tolower(one) == std::tolower(other);
