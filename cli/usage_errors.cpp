@@ -120,9 +120,9 @@ void refuseEmptyValues(const CLI::App& command) {
         if (option->count() == 0 || (option->get_positional() && !isWritten(command, *option)))
             continue;
         if (std::ranges::count(option->results(), std::string()) > 0)
-            throw UsageError(fmt::format("{}: the value of {} is empty; give one, or leave {} out",
+            throw UsageError(fmt::format("{}: the value of {} is empty; give one{}",
                                          command.get_name(), option->get_name(),
-                                         option->get_name()));
+                                         option->get_required() ? "" : ", or leave it out"));
     }
 }
 

@@ -23,7 +23,7 @@ function(hshfit_vector_sources folder property value)
 endfunction()
 
 # hshfit_own_instructions(FOLDER): compiles the vector sources of FOLDER and below once, for AVX2 if
-# this machine has it. The program then says so where it is started on one that has not.
+# this machine has it. The program then ends with a message on a processor without AVX2.
 function(hshfit_own_instructions folder)
   include(CheckCXXSourceRuns)
   check_cxx_source_runs("int main() {

@@ -1,7 +1,7 @@
 #!/bin/sh
-# Builds the core of the program, without its wings, into build-core and checks what it says of
-# them, as ./run demo does. Most objects are those of the whole program in build, which the compiler
-# cache has, if it lies beside this folder.
+# Builds the core of the program into build-core, without its wings and for this machine alone, as
+# ./run demo does, and checks what the program says of the wings. The compiler cache has most
+# objects if the whole program was built in build, beside this folder.
 set -eu
 cd "$(dirname "$0")/.."
 folder=build-core

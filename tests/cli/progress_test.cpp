@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <regex>
 #include <string>
 #include <thread>
 
@@ -30,8 +31,10 @@ std::string said(const Globals& globals, int parts, std::chrono::milliseconds si
 
 TEST(Progress, IsALineAfterEverySilenceWhereThereIsNoTerminal) {
     const std::string each = said({}, 1, 1ms);
-    EXPECT_EQ(each,
-              "hshfit: fit: 1 of 2 after 0 s, 0 s left\nhshfit: fit: 2 of 2 after 0 s, 0 s left\n");
+    // Seconds are left open: a machine may be slow.
+    EXPECT_TRUE(std::regex_match(each, std::regex("hshfit: fit: 1 of 2 after \\d+ s, \\d+ s left\n"
+                                                  "hshfit: fit: 2 of 2 after \\d+ s, 0 s left\n")))
+        << each;
     // Parts that are shorter than the silence, one after the other.
     const std::string some = said({}, 3, 700ms);
     const auto lines = std::count(some.begin(), some.end(), '\n');
