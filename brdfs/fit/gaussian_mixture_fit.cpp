@@ -61,53 +61,69 @@ Slice sliceOf(const Brdf& brdf, double theta, int level) {
     return slice;
 }
 
-/// Residuals sqrt(weight) (g - f), scaled so that f has norm 1. Blocks: shapes (tilt, log
-/// sharpness, log across of each lobe), amplitudes [lobe * channels + channel] in units of the
-/// peak.
+/// At normal incidence f depends on the angle of wi alone, and so does a lobe about the normal that
+/// is as wide across as along. A tilted one would be another for every azimuth that wo comes from.
+GaussianLobe lobeFrom(const double* shape, double theta) {
+    if (theta == 0) return {.sharpness = std::exp(shape[1]), .across = std::exp(shape[1])};
+    return {.tilt = shape[0], .sharpness = std::exp(shape[1]), .across = std::exp(shape[2])};
+}
+
+/// Residuals sqrt(area) (m(g) - m(f)), m the map of the loss, scaled so that m(f) has norm 1.
+/// Blocks: shapes (tilt, log sharpness, log across of each lobe), amplitudes [lobe * channels +
+/// channel] in units of the peak.
 class SliceCost final : public ceres::CostFunction {
 public:
     SliceCost(const Slice& slice, const GaussianFitOptions& options, double peak)
-        : slice_(slice), kind_(options.kind), lobes_(options.lobes), peak_(peak) {
+        : slice_(slice),
+          kind_(options.kind),
+          loss_(options.loss),
+          lobes_(options.lobes),
+          peak_(peak),
+          mapped_(slice.values.size()) {
         set_num_residuals(static_cast<int>(slice.values.size()));
         *mutable_parameter_block_sizes() = {3 * lobes_, lobes_ * static_cast<int>(slice.channels)};
+        const std::size_t count = slice.wi.size();
         double norm = 0;
-        for (std::size_t k = 0; k < slice.wi.size(); ++k) {
-            const double factor = options.cosine ? slice.wi[k].z : 1;
-            roots_.push_back(std::sqrt(slice.areas[k]) * factor);
-            for (std::size_t c = 0; c < slice.channels; ++c)
-                norm += std::pow(roots_[k] * slice.values[c * slice.wi.size() + k], 2);
+        for (std::size_t i = 0; i < mapped_.size(); ++i) {
+            mapped_[i] = mapValue(loss_, slice.values[i], slice.wi[i % count].z).value;
+            norm += slice.areas[i % count] * mapped_[i] * mapped_[i];
         }
-        for (double& root : roots_) root /= std::sqrt(norm);
+        for (const double area : slice.areas) roots_.push_back(std::sqrt(area / norm));
     }
 
     bool Evaluate(double const* const* parameters, double* residuals,
                   double** jacobians) const override {
         const std::size_t count = slice_.wi.size(), channels = slice_.channels;
+        const std::size_t width = lobes_ * channels;
         double* shapes = jacobians ? jacobians[0] : nullptr;
         double* amplitudes = jacobians ? jacobians[1] : nullptr;
-        const std::size_t width = lobes_ * channels;
         if (amplitudes) std::fill(amplitudes, amplitudes + count * channels * width, 0.0);
+        std::vector<GaussianValue> lobes(lobes_);
         for (std::size_t k = 0; k < count; ++k) {
-            for (std::size_t c = 0; c < channels; ++c)
-                residuals[c * count + k] = -roots_[k] * slice_.values[c * count + k];
             for (int j = 0; j < lobes_; ++j) {
-                const double* shape = parameters[0] + 3 * j;
-                const GaussianValue g = evaluateLobe(kind_,
-                                                     {.tilt = shape[0],
-                                                      .sharpness = std::exp(shape[1]),
-                                                      .across = std::exp(shape[2])},
-                                                     slice_.theta, slice_.wi[k]);
-                const double root = roots_[k] * peak_;
-                for (std::size_t c = 0; c < channels; ++c) {
-                    const std::size_t row = c * count + k;
+                const double theta = slice_.theta;
+                GaussianValue& g = lobes[j];
+                g = evaluateLobe(kind_, lobeFrom(parameters[0] + 3 * j, theta), theta,
+                                 slice_.wi[k]);
+                if (theta == 0) g = {g.value, 0, g.byLogSharpness + g.byLogAcross, 0};
+            }
+            for (std::size_t c = 0; c < channels; ++c) {
+                const std::size_t row = c * count + k;
+                double sum = 0;
+                for (int j = 0; j < lobes_; ++j)
+                    sum += parameters[1][j * channels + c] * lobes[j].value;
+                const Mapped mapped = mapValue(loss_, peak_ * sum, slice_.wi[k].z);
+                residuals[row] = roots_[k] * (mapped.value - mapped_[row]);
+                const double slope = roots_[k] * peak_ * mapped.slope;
+                for (int j = 0; j < lobes_; ++j) {
                     const double amplitude = parameters[1][j * channels + c];
-                    residuals[row] += root * amplitude * g.value;
-                    if (amplitudes) amplitudes[row * width + j * channels + c] = root * g.value;
+                    if (amplitudes)
+                        amplitudes[row * width + j * channels + c] = slope * lobes[j].value;
                     if (!shapes) continue;
                     double* to = shapes + (row * lobes_ + j) * 3;
-                    to[0] = root * amplitude * g.byTilt;
-                    to[1] = root * amplitude * g.byLogSharpness;
-                    to[2] = root * amplitude * g.byLogAcross;
+                    to[0] = slope * amplitude * lobes[j].byTilt;
+                    to[1] = slope * amplitude * lobes[j].byLogSharpness;
+                    to[2] = slope * amplitude * lobes[j].byLogAcross;
                 }
             }
         }
@@ -117,9 +133,10 @@ public:
 private:
     const Slice& slice_;
     GaussianKind kind_;
+    Loss::Kind loss_;
     int lobes_;
     double peak_;
-    std::vector<double> roots_;
+    std::vector<double> mapped_, roots_;
 };
 
 /// The parts of which starts are made.
@@ -224,8 +241,10 @@ void addEnergy(const Slice& slice, GaussianKind kind, bool keep, GaussianElevati
     }
 }
 
+/// Of f cos(theta_i), or of f where that was fitted.
 double relativeError(const Slice& slice, const GaussianFitOptions& options,
                      const GaussianElevation& fit) {
+    const bool cosine = options.loss != Loss::Kind::l2;
     double difference = 0, norm = 0;
     const std::size_t count = slice.wi.size();
     for (std::size_t i = 0; i < slice.values.size(); ++i) {
@@ -234,7 +253,7 @@ double relativeError(const Slice& slice, const GaussianFitOptions& options,
         for (const GaussianLobe& lobe : fit.lobes)
             value +=
                 lobe.amplitude[i / count] * evaluateLobe(options.kind, lobe, slice.theta, w).value;
-        const double weight = slice.areas[i % count] * (options.cosine ? w.z * w.z : 1);
+        const double weight = slice.areas[i % count] * (cosine ? w.z * w.z : 1);
         difference += weight * std::pow(value - slice.values[i], 2);
         norm += weight * std::pow(slice.values[i], 2);
     }
@@ -256,12 +275,10 @@ GaussianElevation fitElevation(const Brdf& brdf, double theta, const GaussianFit
             if (options.lobes == 1 && middle) break;
         }
     for (int j = 0; j < options.lobes; ++j) {
-        const double* shape = best.shapes.data() + 3 * j;
         const double* amplitude = best.amplitudes.data() + j * slice.channels;
-        result.lobes.push_back({.tilt = shape[0],
-                                .sharpness = std::exp(shape[1]),
-                                .across = std::exp(shape[2]),
-                                .amplitude = {amplitude, amplitude + slice.channels}});
+        GaussianLobe lobe = lobeFrom(best.shapes.data() + 3 * j, theta);
+        lobe.amplitude = {amplitude, amplitude + slice.channels};
+        result.lobes.push_back(std::move(lobe));
     }
     // The narrowest first.
     std::ranges::sort(result.lobes, std::ranges::greater(), &GaussianLobe::sharpness);
@@ -278,6 +295,8 @@ void requireFittable(const Brdf& brdf, const OutgoingSet& outgoing,
             "{}: mixtures about the mirror direction are of isotropic BRDFs", brdf.name()));
     if (outgoing.map == OutgoingSet::Map::parabolic)
         throw UsageError("a map of outgoing directions: give elevations (16) or one (45,0)");
+    if (options.loss == Loss::Kind::picture)
+        throw UsageError("the loss picture is of fits with lights; of Gaussians: cube-root");
     if (options.lobes < 1 || options.lobes > 16)
         throw UsageError(fmt::format("{} lobes: from 1 to 16 are possible", options.lobes));
 }

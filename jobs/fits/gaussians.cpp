@@ -32,8 +32,13 @@ using options::spelled;
 constexpr EnumWord gaussianKinds[] = {{"sg", "spherical"}, {"asg", "anisotropic"}};
 using GaussianKinds = EnumWords<gaussianKinds, brdfs::GaussianKind>;
 
-std::vector<Word> gaussianWeights() {
-    return {{"cosine"}, {"none"}};
+/// The losses of values of f; that of pictures asks for lights.
+std::vector<Word> gaussianLosses() {
+    std::vector<Word> words;
+    for (const brdfs::Loss& loss : brdfs::losses())
+        if (loss.kind != brdfs::Loss::Kind::picture)
+            words.push_back({std::string(loss.name), std::string(loss.help)});
+    return words;
 }
 
 constexpr OptionRow gaussianRows[] = {
@@ -47,9 +52,9 @@ constexpr OptionRow gaussianRows[] = {
         .takes({.words = GaussianKinds::words, .complete = true}),
     OptionRow{"outgoing", at<&GaussianOptions::outgoing>, "N (elevations) or THETA,PHI in degrees"}
         .takes({.syntax = Syntax::outgoing}),
-    OptionRow{"weight", at<&GaussianOptions::weight>,
-              "Least squares of f cos(theta_i) (cosine) or of f (none)"}
-        .takes({.words = gaussianWeights, .complete = true}),
+    OptionRow{"loss", at<&GaussianOptions::loss>,
+              "Squares are of f (l2), f cos(theta_i) (cosine), log, log-relative or cube-root"}
+        .takes({.words = gaussianLosses, .complete = true}),
     OptionRow{"keep-energy", at<&GaussianOptions::fit, &brdfs::GaussianFitOptions::keepEnergy>,
               "Scale amplitudes so that every albedo is kept"},
     OptionRow{"metrics", at<&GaussianOptions::metrics>,
@@ -91,15 +96,12 @@ OptionRows<GaussianOptions> gaussianOptions() {
 FittedGaussians fitGaussians(const std::string& spec, const std::string& output,
                              const GaussianOptions& options, const Listener& listener) {
     requireJsonName(output, "mixtures of Gaussians");
-    constexpr std::array<std::string_view, 2> weights{"cosine", "none"};
-    if (std::ranges::find(weights, options.weight) == weights.end())
-        throw spelling::unknown("weight", options.weight, weights);
     const auto metrics =
         options.metrics.empty() ? std::vector<const Metric*>() : selectMetrics(options.metrics);
     const OutgoingSet outgoing = OutgoingSet::parse(options.outgoing);
     const auto brdf = openBrdf(spec, options.rgb);
     brdfs::GaussianFitOptions how = options.fit;
-    how.cosine = options.weight == "cosine";
+    how.loss = brdfs::findLoss(options.loss).kind;
     how.progress = listener.part("gaussians");
     FittedGaussians result{.brdf = brdf->name(),
                            .mixture = brdfs::fitGaussians(*brdf, outgoing, how),

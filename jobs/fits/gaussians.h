@@ -19,12 +19,12 @@
 namespace hshfit::jobs {
 
 struct GaussianOptions {
-    /// Without `cosine`; its `progress` is not called: the listener is.
+    /// Without `loss`; its `progress` is not called: the listener is.
     brdfs::GaussianFitOptions fit = {};
-    std::string weight = "cosine";  ///< least squares of f cos(theta_i), or none: of f
-    std::string outgoing = "16";    ///< OutgoingSet::parse; elevations or one direction
-    std::string metrics = {};       ///< names separated by commas, or "all"; empty: none
-    bool rgb = false;               ///< wavelengths as linear Rec. 709
+    std::string loss = "cube-root";  ///< brdfs::losses() but `picture`
+    std::string outgoing = "16";     ///< OutgoingSet::parse; elevations or one direction
+    std::string metrics = {};        ///< names separated by commas, or "all"; empty: none
+    bool rgb = false;                ///< wavelengths as linear Rec. 709
 };
 OptionRows<GaussianOptions> gaussianOptions();
 

@@ -823,7 +823,7 @@ def gaussians(
     lobes: int = ...,
     kind: str = ...,
     outgoing: OutgoingLike = ...,
-    weight: str = ...,
+    loss: str = ...,
     keep_energy: bool = ...,
     metrics: Names = ...,
     rgb: bool = ...,

@@ -125,10 +125,27 @@ TEST(GaussianMixture, MoreLobesFitBetter) {
     for (const GaussianKind kind : {GaussianKind::spherical, GaussianKind::anisotropic}) {
         double before = 1;
         for (const int lobes : {1, 2, 4}) {
-            const GaussianMixture fit = fitGaussians(*brdf, OutgoingSet::direction(radians(40), 0),
-                                                     {.kind = kind, .lobes = lobes});
+            const GaussianMixture fit =
+                fitGaussians(*brdf, OutgoingSet::direction(radians(40), 0),
+                             {.kind = kind, .lobes = lobes, .loss = Loss::Kind::cosine});
             EXPECT_LT(fit.content().elevations[0].error, 0.7 * before) << lobes;
             before = fit.content().elevations[0].error;
+        }
+    }
+}
+
+/// f of an isotropic BRDF is the same for every azimuth of wi there; a mixture that is not has a
+/// pole where a surface is seen along its normal.
+TEST(GaussianMixture, IsRoundAtNormalIncidence) {
+    const auto brdf = open("ggx:alpha=.6");
+    for (const GaussianKind kind : {GaussianKind::spherical, GaussianKind::anisotropic}) {
+        const GaussianMixture fit = fitGaussians(*brdf, OutgoingSet::elevations(4), {.kind = kind});
+        for (const double theta : {0.2, 0.7, 1.2}) {
+            const double along = evaluate(fit, directionFromAngles(theta, 0), {0, 0, 1})[0];
+            EXPECT_GT(along, 0);
+            for (const double phi : {0.5, 1.5, 3.1})
+                EXPECT_NEAR(evaluate(fit, directionFromAngles(theta, phi), {0, 0, 1})[0], along,
+                            1e-12);
         }
     }
 }

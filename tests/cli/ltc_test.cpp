@@ -70,7 +70,7 @@ TEST_F(Cli, GaussiansAreABrdf) {
 
 // By the rule of all other commands, and with the numbers of `compare`.
 TEST_F(Cli, GaussiansThatLookWrongArePoor) {
-    const std::string call = "gaussians ggx:alpha=.3 --force -o " + path("g.json");
+    const std::string call = "gaussians ggx:alpha=.3 --loss cosine --force -o " + path("g.json");
     const Answer answer = run(call + " --json");
     ASSERT_EQ(answer.code, 0) << answer.err;
     const Json json = Json::parse(answer.out);
@@ -92,6 +92,19 @@ TEST_F(Cli, GaussiansThatLookWrongArePoor) {
     const Answer better = run(call2.substr(7) + " --json");
     ASSERT_EQ(better.code, 0) << better.err;
     EXPECT_FALSE(Json::parse(better.out).contains("poor"));
+    // The usual loss is near the look of a picture, and keeps more of the light.
+    for (const std::string kind : {"sg", "asg"}) {
+        const auto answerOf = [&](const std::string& loss) {
+            return Json::parse(run("gaussians ggx:alpha=.3 --quiet --json --force --kind " + kind +
+                                   loss + " -o " + path("g.json"))
+                                   .out);
+        };
+        const Json usual = answerOf(""), cosine = answerOf(" --loss cosine");
+        EXPECT_LT(usual["picture"]["flip"]["mean"],
+                  0.9 * cosine["picture"]["flip"]["mean"].get<double>());
+        EXPECT_LT(usual["largest_energy_error"],
+                  0.9 * cosine["largest_energy_error"].get<double>());
+    }
     // Smooth lobes look right; one direction has no picture.
     EXPECT_EQ(run("gaussians lambert --quiet --json -o " + path("l.json")).out.find("\"poor\""),
               std::string::npos);

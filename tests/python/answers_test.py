@@ -22,9 +22,9 @@ class Answers(program.InFolder):
         self.assertEqual(ours, theirs)
         self.assertEqual(self.bytes_of("ours.json"), self.bytes_of("theirs.json"))
         ours = hshfit.gaussians("ggx:alpha=.3", "ours.json", lobes=2, kind="asg", outgoing=3,
-                                weight="none", keep_energy=True, metrics="log")
+                                loss="l2", keep_energy=True, metrics="log")
         theirs = self.json_of("gaussians", "ggx:alpha=.3", "-o", "theirs.json", "--lobes", "2",
-                              "--kind", "asg", "--outgoing", "3", "--weight", "none",
+                              "--kind", "asg", "--outgoing", "3", "--loss", "l2",
                               "--keep-energy", "--metrics", "log")
         self.assertGreater(ours["picture"]["false_peak"]["value"], 0.1)
         for answer in (ours, theirs):  # the call is worded as one of the program or of the package
