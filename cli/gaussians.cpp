@@ -3,6 +3,8 @@
 #include "documents.h"
 #include "job_options.h"
 
+#include <hshfit/percent.h>
+
 #include <jobs/fits/gaussians.h>
 
 #include <fmt/format.h>
@@ -27,9 +29,9 @@ void runGaussians(const GaussianArguments& arguments, const Globals& globals) {
     if (globals.json) return printJson(answer);
     std::string text = fmt::format(
         "{}: {} {} lobes for each of {} outgoing directions; relative error {:.4f}, albedo off by "
-        "at most {:.2f} %\n",
+        "at most {}\n",
         arguments.output, answer["lobes"].get<int>(), answer["kind"].get<std::string>(),
-        fitted.outgoing.size(), fitted.meanError, 100 * fitted.largestEnergyError);
+        fitted.outgoing.size(), fitted.meanError, percent(fitted.largestEnergyError));
     if (fitted.picture) text += "  " + summaryOf(*fitted.picture) + "\n";
     for (const MetricValue& value : fitted.metrics) text += metricText(value);
     printText(text);

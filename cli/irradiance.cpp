@@ -5,6 +5,7 @@
 #include "job_options.h"
 
 #include <hshfit/error.h>
+#include <hshfit/percent.h>
 
 #include <jobs/lighting/irradiance.h>
 
@@ -85,9 +86,10 @@ Json answer(const jobs::LitSurface& lit, const IrradianceArguments& arguments) {
 
 std::string errorText(const char* name, std::size_t numbers, const IrradianceErrors& error) {
     return fmt::format(
-        "{:<18} {:>3} bytes  error at most {:.2f} % (normal {}), mean {:.2f} %{}\n", name,
-        numbers * sizeof(float), 100 * error.maximum, directionText(error.worst), 100 * error.mean,
-        error.negative < 0 ? fmt::format(", down to {:.2f} %", 100 * error.negative) : "");
+        "{:<18} {:>3} bytes  error at most {} (normal {}), mean {}{}\n", name,
+        numbers * sizeof(float), percent(error.maximum), directionText(error.worst),
+        percent(error.mean),
+        error.negative < 0 ? fmt::format(", down to {}", percent(error.negative)) : "");
 }
 
 /// 0 for what sums of double precision leave of nothing.

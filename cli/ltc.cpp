@@ -2,6 +2,8 @@
 #include "command_rows.h"
 #include "job_options.h"
 
+#include <hshfit/percent.h>
+
 #include <jobs/common/option_words.h>
 #include <jobs/fits/ltc.h>
 
@@ -31,10 +33,10 @@ void runLtc(const LtcArguments& arguments, const Globals& globals) {
         std::ranges::max_element(table.cells, {}, &brdfs::LtcLobe::misplaced)->misplaced;
     printText(fmt::format(
         "{}: {} x {} over {} from {:.4g} to {:.4g}; cubed lobe error {:.4f}, at most {:.3f}; "
-        "{:.2f} % of the light misplaced, at most {:.1f} %; {:.0f} s\n",
+        "{} of the light misplaced, at most {}; {:.0f} s\n",
         fmt::join(fitted.files, ", "), table.size, table.size, table.parameter,
         table.values.front(), table.values.back(), summary.meanError, summary.largestError,
-        100 * summary.meanMisplaced, 100 * misplaced, fitted.seconds));
+        percent(summary.meanMisplaced), percent(misplaced), fitted.seconds));
 }
 
 constexpr ArgumentRow ltcArguments[] = {

@@ -30,7 +30,7 @@ constexpr OptionRow lightingRows[] = {
     OptionRow{"lobes",
               at<&LightingExportOptions::errors, &LightingErrorOptions::tables,
                  &LightingTableOptions::lobes>,
-              "Of --lighting prefiltered, lookups besides the diffuse one, 1 to 6"}
+              "Of --lighting prefiltered, lookups besides the diffuse one"}
         .within(Bounds<int>{1, lighting::PrefilteredTable::mostLobes})
         .onlyFor(exports::lighting),
     OptionRow{"seconds", at<&LightingExportOptions::errors, &LightingErrorOptions::seconds>,
