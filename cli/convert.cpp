@@ -102,10 +102,13 @@ std::string convertText(const Json& document, const jobs::Converted& converted) 
             100 * check["median"].get<double>(), 100 * check["percentile_95"].get<double>(),
             100 * check["noise"].get<double>());
     }
-    if (!loss) return text;
-    if (converted.error)
-        text += fmt::format("  read back: {} off over {}\n", percent(*converted.error),
+    if (converted.error) {
+        text += fmt::format("  read back: {} off over {}", percent(*converted.error),
                             converted.errorOver);
+        if (converted.picture && !loss) text += "; " + summaryOf(*converted.picture);
+        text += "\n";
+    }
+    if (!loss) return text;
     if (converted.picture) text += "  " + indented(textOf(*converted.picture));
     text += fmt::format("loss, outgoing {}\n", loss->outgoing);
     for (const MetricValue& result : loss->metrics) text += metricText(result);

@@ -103,7 +103,7 @@ ConversionLoss measureLoss(const Brdf& input, const std::string& output,
 /// over few directions with a coarse quadrature, and the picture error. Nothing where the channels
 /// differ.
 void stateError(const Brdf& input, const std::string& output, const brdfs::Parameters& parameters,
-                Converted& result) {
+                const Listener& listener, Converted& result) {
     const OutgoingSet outgoing =
         input.laws().isotropic ? OutgoingSet::elevations(6) : OutgoingSet::parabolic(6, 6);
     try {
@@ -115,8 +115,9 @@ void stateError(const Brdf& input, const std::string& output, const brdfs::Param
         result.errorOver = fmt::format("f cos(theta_i) for {} outgoing {}", outgoing.spec(),
                                        input.laws().isotropic ? "elevations" : "directions");
         result.picture = pictureErrorOf(input, *read);
-    } catch (const Error&) {
-        result.error = {};  // spectra that were written as colours, for one
+    } catch (const Error& error) {  // spectra that were written as colours, for one
+        result.error = {};
+        listener.say(fmt::format("the error of {} is not known: {}", output, error.what()));
     }
     if (!result.error) return;
     const auto reason = poorReason(1 - *result.error * *result.error, result.picture);
@@ -143,7 +144,8 @@ Converted converted(const Brdf& brdf, const brdfs::RepairedBrdf* repaired,
     if (options.measureLoss) {
         result.loss = measureLoss(brdf, output, parameters, options, listener);
     }
-    if (writer.readBack && !isStandardOutput(output)) stateError(brdf, output, parameters, result);
+    if (writer.readBack && !isStandardOutput(output))
+        stateError(brdf, output, parameters, listener, result);
     brdf.checkIntact();
     return result;
 }

@@ -50,6 +50,20 @@ TEST_F(Cli, ConvertStatesTheLossOfFilesForPbrt) {
     expectError("convert lambert " + path("c.bsdf") + " --to rgl:for=mitsuba", 2, "pbrt", 2);
 }
 
+/// A table of ten nodes cannot follow the lobe: the text has the number that the JSON has.
+TEST_F(Cli, ConvertSaysHowFarTheFileIsOff) {
+    const std::string call = "convert ggx:alpha=.1 --force --quiet " + path("a.alta");
+    const Answer json = run(call + " --json"), text = run(call);
+    ASSERT_EQ(text.code, 0) << text.err;
+    const double error = std::stod(json.out.substr(json.out.find("\"error\": ") + 9));
+    EXPECT_GT(error, 0.1);
+    const std::string words = "  read back: ";
+    const std::size_t at = text.out.find(words);
+    ASSERT_NE(at, std::string::npos) << text.out;
+    EXPECT_NEAR(std::stod(text.out.substr(at + words.size())), 100 * error, 0.5);
+    EXPECT_NE(text.out.find("; FLIP "), std::string::npos) << text.out;
+}
+
 /// One number is one number, whether it is called grey or has the wavelength of the format.
 TEST_F(Cli, ConvertStatesTheLossOfGreyAtOneWavelength) {
     const Answer answer = run("convert lambert:kd=.5 " + path("a.xompt") +
