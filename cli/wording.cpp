@@ -1,5 +1,7 @@
 #include "wording.h"
 
+#include <hshfit/files/standard_streams.h>
+
 #include <algorithm>
 #include <cctype>
 
@@ -55,8 +57,10 @@ std::string quoted(const std::string& text) {
     return out + "'";
 }
 
-/// The text, in quotes if it contains characters that are special to a shell.
+/// The text, in quotes if it contains characters that are special to a shell; standard input as it
+/// is typed.
 std::string forShell(const std::string& text) {
+    if (text == standardInputPath) return "-";
     const auto plain = [](char c) {
         return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
                std::string_view("._-/:=,+@%").find(c) != std::string_view::npos;

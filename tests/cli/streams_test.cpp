@@ -71,6 +71,14 @@ TEST_F(Streams, PairsPresetsAndMeasuredFilesAreReadByTheirContent) {
     EXPECT_NEAR(std::stod(table.out.substr(table.out.find('\t'))), 0.25 / M_PI, 1e-9);
 }
 
+TEST_F(Streams, AdviceNamesStandardInputAsItIsTyped) {
+    ASSERT_EQ(run("convert ggx:alpha=.1 " + path("g.binary")).code, 0);
+    const Answer poor = shell("hshfit project - --order 2 --outgoing 2 -o c.json <g.binary");
+    ASSERT_EQ(poor.code, 0) << poor.err;
+    EXPECT_NE(poor.err.find(": hshfit project - -o c.json --force "), std::string::npos)
+        << poor.err;
+}
+
 TEST_F(Streams, OneInputMayBeNamedTwice) {
     const Answer same = shell(
         "hshfit project ggx:alpha=.5 --order 4 --outgoing 4 --cosine -o - "

@@ -70,7 +70,7 @@ std::string standardInput() {
     if (!S_ISREG(status.st_mode)) keepInput();
     if (::fstat(STDIN_FILENO, &status) != 0) failInput(messageOf(errno));
     if (status.st_size == 0) failInput("is empty");
-    return "/dev/stdin";
+    return std::string(standardInputPath);
 }
 
 std::string standardOutput(std::string_view extension) {

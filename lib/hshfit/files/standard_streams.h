@@ -5,6 +5,9 @@
 
 namespace hshfit::inline files {
 
+/// The path of standard input.
+inline constexpr std::string_view standardInputPath = "/dev/stdin";
+
 /// A path through which all of standard input can be read, again and at any place, like a file.
 /// A pipe is first read to its end, into memory. Throws InputError if standard input is closed, a
 /// terminal or empty.
