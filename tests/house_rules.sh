@@ -112,6 +112,16 @@ matches '(TEST|TEST_F|TEST_P)\(.*DISABLED_|^ *#if 0' '*.h' '*.cpp' | rule 'switc
 tracked '*.h' '*.cpp' | grep -E '(^|[/_])(utils?|common|helpers?|manager)[_.]' |
     rule 'names that say nothing' || true
 
+# Pages run scripts by their paths.
+git ls-files -s | while read -r mode _ _ file; do
+    starts=$(head -c 2 "$file" | tr -d '\0')
+    case $mode$starts in
+        '100644#!') echo "$file: begins with #! and cannot be run (chmod +x)" ;;
+        '100755#!') ;;
+        100755*) echo "$file: can be run and does not begin with #!" ;;
+    esac
+done | rule 'scripts that begin with #! can be run, and no other file'
+
 # Markdown ends a table at an empty line: rows below one are text, unless a head and a line of
 # dashes come first.
 # shellcheck disable=SC2016  # fields of awk

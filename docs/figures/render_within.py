@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 """Pictures by coefficients at the order that `report` says is enough for 1 %, against direct
 integration: twelve materials under five lights (docs/reference/render.md).
 

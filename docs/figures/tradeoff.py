@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints the tables of docs/explanation/tradeoff.md:
+"""Prints the tables of docs/results/published_forms.md:
 docs/figures/tradeoff.py PROGRAM SHARED TABLE [--paper] [NAME ...]
 
 PROGRAM is build/hshfit, SHARED the folder of shared test data, TABLE one of rgl, merl, models,
