@@ -1,5 +1,5 @@
 // cache_views [SIZE PATHS [RAYS ACCURACY [VIEW]]]: pictures of indirect light by the radiance cache
-// against path tracing in the twelve scenes of docs/explanation/illuminate.md. Prints the rows of
+// against path tracing in the twelve scenes of docs/results/illumination.md. Prints the rows of
 // its table.
 
 #include <hshfit/transport/radiance_cache/cached_picture.h>

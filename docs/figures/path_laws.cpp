@@ -1,4 +1,4 @@
-// path_laws PATHS [box|cornell|furnace|bias] [MESHES]: the laws of docs/explanation/illuminate.md
+// path_laws PATHS [box|cornell|furnace|bias] [MESHES]: the laws of docs/results/illumination.md
 // that path tracing is held to, measured at length: light in a box, and in the Cornell box of the
 // folder MESHES, by bounce against radiosity with exact form factors, a white scene in a furnace,
 // and the scatter of runs against one long run. Prints the rows of its tables.

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """radiance_cache.py PROGRAM MESHES FOLDER [spacing|costs|floor]: figures of
-docs/explanation/illuminate.md.
+docs/results/illumination.md.
 
 Measures `illuminate --method radiance-cache` against path tracing in the Cornell box, whose meshes
 lie in MESHES (cbox_*.obj), without direct light. Scenes, pictures and tables.md go to FOLDER. Takes

@@ -1,5 +1,5 @@
 // ray_leaks RAYS [MESH]: rays in closed meshes that meet nothing, as a table of
-// docs/explanation/illuminate.md: even rays from places inside, rays at edges and at vertices, and
+// docs/results/illumination.md: even rays from places inside, rays at edges and at vertices, and
 // paths that are scattered by the inside, each with Embree's test alone and as RayScene traces
 // them. Of paths, `again` counts rays that meet their own plane or a neighbour's at once. Rays at
 // edges and vertices are a tenth of RAYS. MESH is a number from 1; default: all.
