@@ -155,16 +155,21 @@ def zones(name, trade, network):
     ours = [pairs[zone]["value"] for zone in ("horizon", "mirror", "maximum")]
     theirs = [network.horizon, network.mirror, network.maximum]
     cells = [f"{number(b)}, {number(a)}" for a, b in zip(ours, theirs)]
+    most = pairs["maximum"]
+    cells[-1] += f" at {most['wi']['theta']:.0f}°, {most['wo']['theta']:.0f}°"
     mean = f"{form['error']:.4f} ± {pairs['mean_log']['error']:.1g}"
     # Of pairs in a plane there is none.
-    of = pairs["albedo"]["of"]
-    albedo = f"{number(pairs['albedo']['value'])} of {number(of)}" if of else ""
+    own = pairs["albedo"]
+    albedo = ""
+    if own["of"]:
+        first, last = own["theta_o"]
+        albedo = f"{number(own['value'])} of {number(own['of'])} at {first:.4g} to {last:.4g}°"
     return "| " + " | ".join([name, mean, *cells, albedo]) + " |"
 
 
 ZONES = """
 Within 2700 bytes: error of our form; network, ours near the horizon, near the mirror, largest
-|f - g| c; our largest error of albedo
+|f - g| c, with theta of wi and wo where ours is; our largest error of albedo, with theta of wo
 
 | material | mean | horizon | mirror | maximum | albedo |
 |---|---|---|---|---|---|"""
