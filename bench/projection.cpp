@@ -15,18 +15,15 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <ctime>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 namespace {
 
 using namespace hshfit;
-using Clock = std::chrono::steady_clock;
 
 double cpuSeconds() {
     timespec time{};
@@ -280,25 +277,8 @@ void merl(benchmark::State& state, const std::string& outgoing) {
 BENCHMARK_CAPTURE(merl, 16, "16")->UseManualTime()->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(merl, 32x32, "32x32")->UseManualTime()->Unit(benchmark::kMillisecond);
 
-/// Wall time, with as many threads as the argument says.
-void byThreads(benchmark::State& state) {
-    const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
-                                      static_cast<std::size_t>(state.range(0)));
-    const auto brdf = brdfs::open(ward);
-    for (auto _ : state) {
-        const auto start = Clock::now();
-        benchmark::DoNotOptimize(run(*brdf, {.spec = ward}));
-        state.SetIterationTime(std::chrono::duration<double>(Clock::now() - start).count());
-    }
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-    for (unsigned n = 1; n <= std::max(2u, std::thread::hardware_concurrency()); n *= 2)
-        benchmark::RegisterBenchmark("byThreads", byThreads)
-            ->Arg(n)
-            ->UseManualTime()
-            ->Unit(benchmark::kMillisecond);
     runInterleaved(argc, argv, 7, "0.1");
 }

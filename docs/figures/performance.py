@@ -73,32 +73,16 @@ def by_channels_and_bases(found):
         sections["channels"] = table(
             ["channels", "evaluations", "ms"],
             [[n, f"{e['evaluations']:.0f}", f"{ms(e):.3g}"] for n, e in channels])
-        plot("channels", ("channels", "ms"),
-             [("GGX .3 x cos, 1024 directions", [(n, ms(e)) for n, e in channels], SOLID)], log="",
-             key="bottom right", extra=["set yrange [0:*]", "set xtics 1"])
     bases = series(found, "byBases")
     if bases:
         first = ms(bases[0][1])
         names = ["hsh", "+ zernike", "+ sh", "+ esh"]
         rows = []
         for i, (n, e) in enumerate(bases):
-            more = f"{100 * (ms(e) - ms(bases[i - 1][1])) / first:.1f} %" if i else ""
+            more = round(100 * (ms(e) - ms(bases[i - 1][1])) / first) if i else ""
             rows.append([names[n - 1], f"{e['evaluations']:.0f}", f"{ms(e):.3g}", more])
-        sections["bases"] = table(["bases", "evaluations", "ms", "more, of the first"], rows)
+        sections["bases"] = table(["bases", "evaluations", "ms", "more, % of the first"], rows)
     return sections
-
-
-def by_threads(found):
-    points = series(found, "byThreads")
-    if not points:
-        return {}
-    plot("threads", ("threads", "ms of wall time"),
-         [("Ward .2/.5 x cos, 1024 directions", [(n, ms(e)) for n, e in points], SOLID),
-          ("in proportion", [(n, ms(points[0][1]) / n) for n, _ in points], DASHED)],
-         log="", key="bottom left Left reverse", extra=["set yrange [0:*]", "set xtics 1"])
-    return {"threads": table(
-        ["threads", "ms, wall", "speed"],
-        [[n, f"{ms(e):.3g}", f"{ms(points[0][1]) / ms(e):.2f}"] for n, e in points])}
 
 
 def monte_carlo(found):
@@ -152,7 +136,7 @@ def main():
                  floors.analysis(load(folder, "analysis"), rates),
                  floors.writing(load(folder, "writing")), by_order(projection),
                  by_directions(projection), by_tolerance(projection, carlo),
-                 by_channels_and_bases(projection), by_threads(projection), monte_carlo(carlo),
+                 by_channels_and_bases(projection), monte_carlo(carlo),
                  merl(load(folder, "merl_projection"), projection),
                  folder_of_ten(load(folder, "folder"))):
         sections.update(part)
