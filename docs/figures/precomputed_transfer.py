@@ -173,7 +173,7 @@ def furnace():
     path = scene("furnace", ["lambert:kd=1"] * 3, 0.3)
     print()
     head("passes", "mean deficit", "above 1e-3", "never lit", "largest of the others", "vertex")
-    for passes in (0, 1, 2, 5, 10, 20, 40, 80, 160, 320):
+    for passes in (0, 5, 40, 320):
         options = ("--sides", "front", "--passes", str(passes), "--order", "1")
         transfer(path, "furnace", *options)
         tensors = out / "furnace" / "transfer.tensor"
