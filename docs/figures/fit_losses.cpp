@@ -2,20 +2,18 @@
 //     fit_losses CSV DATA… [--model MODEL] [--size PIXELS] [--light SPEC]… [--loss NAME]…
 //                [--picture PNG] [--spheres PNG] [--metrics no]
 //     fit_losses --of CSV…
-// fits MODEL (lambert+ggx) to each DATA with every loss, at nodes or at the pixels of `picture`,
-// and as fits were by default before (`former`): the loss cosine, at nodes in half and difference
-// angles, or at the cells of a slice. It writes a row per DATA and loss to CSV: each loss' own
-// metric as compare measures it, and of spheres under the lights of `picture` (or those given) mean
-// FLIP and relative L2, with the largest FLIP of a pixel. For each loss, means over DATA, the worst
-// of them, and the share of DATA on which it is the best go to stdout; --of prints this of the rows
-// of several CSV. --loss leaves out other losses, --metrics no the metrics of compare. --spheres
-// writes a row for each DATA: for each light the source, the fit by the first loss, and the former
-// fit, exposed for the source.
+// fits MODEL (lambert+ggx) to each DATA with every loss, at nodes or at the pixels of `picture`. It
+// writes a row per DATA and loss to CSV: each loss' own metric as compare measures it, and of
+// spheres under the lights of `picture` (or those given) mean FLIP and relative L2, with the
+// largest FLIP of a pixel. For each loss, means over DATA, the worst of them, and the share of DATA
+// on which it is the best go to stdout; --of prints this of the rows of several CSV. --loss leaves
+// out other losses,
+// --metrics no the metrics of compare. --spheres writes a row for each DATA: for each light the
+// source and the fit by each loss, exposed for the source.
 
 #include <brdfs/catalog.h>
 #include <brdfs/fit/fit.h>
 #include <brdfs/fit/picture_samples.h>
-#include <brdfs/measured/gridded/slice.h>
 #include <hshfit/accuracy/metrics.h>
 #include <hshfit/light/catalog.h>
 #include <hshfit/pictures/flip.h>
@@ -73,47 +71,6 @@ Arguments argumentsOf(int argc, char** argv) {
     return result;
 }
 
-/// Samples as they were before there was a loss of pictures: the cells of slices, of others nodes
-/// in 45 x 30 x 30 bins of half and difference angles, crowded at grazing angles.
-FitSamples formerSamples(const Brdf& data) {
-    if (dynamic_cast<const SliceBrdf*>(&data))
-        return gatherSamples(data, {.places = SamplePlaces::cells});
-    FitSamples samples;
-    samples.channels = data.channels();
-    samples.isotropic = data.laws().isotropic;
-    samples.solidAngles = true;
-    const auto band = [](double from, double to) {
-        return std::cos(std::max(from, 0.0)) - std::cos(std::min(to, pi / 2));
-    };
-    const auto half = [](double h) { return pi / 2 * ((h + 0.5) / 45) * ((h + 0.5) / 45); };
-    std::vector<double> interleaved;
-    for (int h = 0; h < 45; ++h)
-        for (int d = 0; d < 30; ++d)
-            for (int p = 0; p < 30; ++p) {
-                const double thetaD = radians(3 * (d + 0.5)), step = radians(3);
-                const DirectionPair pair =
-                    fromHalfDifference(half(h), 0, thetaD, radians(12 * (p + 0.5)));
-                if (std::min(pair.wi.z, pair.wo.z) <= 1e-12) continue;
-                samples.wiX.push_back(pair.wi.x);
-                samples.wiY.push_back(pair.wi.y);
-                samples.wiZ.push_back(pair.wi.z);
-                samples.wo.push_back(pair.wo);
-                samples.weights.push_back(band(h > 0 ? half(h - 0.5) : 0.0, half(h + 0.5)) * 4 *
-                                          std::cos(thetaD) *
-                                          band(thetaD - step / 2, thetaD + step / 2));
-                const auto f = evaluate(data, pair.wi, pair.wo);
-                interleaved.insert(interleaved.end(), f.begin(), f.end());
-            }
-    const std::size_t count = samples.size(), channels = samples.channels.count();
-    for (std::size_t c = 0; c < channels; ++c)
-        for (std::size_t k = 0; k < count; ++k)
-            samples.values.push_back(interleaved[k * channels + c]);
-    double sum = 0;
-    for (const double weight : samples.weights) sum += weight;
-    for (double& weight : samples.weights) weight *= static_cast<double>(count) / sum;
-    return samples;
-}
-
 RgbPicture shown(const SpherePicture& sphere, double stops) {
     RgbPicture result{sphere.size, sphere.size, sphere.radiance};
     for (std::size_t k = 0; k < result.values.size(); ++k)
@@ -152,7 +109,7 @@ std::vector<SpherePicture> spheresOf(const Brdf& exact, const Arguments& argumen
         const std::vector<Light> lights = parseLights(text).lights;
         const DirectIntegral integral(lights);
         result.push_back(renderByIntegration(brdf, points, view, integral,
-                                             {.tolerance = 0.05, .maxEvaluations = 1 << 11})
+                                             {.tolerance = 0.05, .maxEvaluations = 1 << 16})
                              .picture);
     }
     return result;
@@ -198,8 +155,7 @@ std::vector<Row> rowsOf(const std::string& path, const Arguments& arguments,
     const OutgoingSet outgoing = comparedOutgoing(data->laws().isotropic);
     pictures.push_back(spheresOf(*data, arguments));
     const std::vector<SpherePicture> reference = pictures.back();
-    const FitSamples nodes = gatherSamples(*data, {}), pixels = pictureSamples(*data),
-                     former = formerSamples(*data);
+    const FitSamples nodes = gatherSamples(*data, {}), pixels = pictureSamples(*data);
     std::vector<Row> rows;
     const auto add = [&](const FitSamples& samples, Loss::Kind kind, std::string name) {
         Row row{.data = std::filesystem::path(path).filename().string(), .loss = std::move(name)};
@@ -212,7 +168,6 @@ std::vector<Row> rowsOf(const std::string& path, const Arguments& arguments,
                    row.errors.flip, row.errors.relativeL2, samples.size(), row.fit.spec);
         rows.push_back(std::move(row));
     };
-    add(former, Loss::Kind::cosine, "former");
     for (const Loss& loss : losses())
         if (arguments.losses.empty() || std::ranges::count(arguments.losses, loss.name) > 0)
             add(loss.kind == Loss::Kind::picture ? pixels : nodes, loss.kind,
@@ -225,8 +180,7 @@ SpherePicture exposed(SpherePicture sphere, double stops) {
     return sphere;
 }
 
-/// `pictures` has, for each of DATA, pictures of the source, of the former fit, and of the fit by
-/// each loss.
+/// `pictures` has, for each of DATA, pictures of the source and of the fit by each loss.
 void writeCompared(const std::vector<std::vector<SpherePicture>>& pictures, std::size_t data,
                    const std::string& path) {
     const std::size_t each = pictures.size() / data;
@@ -235,7 +189,7 @@ void writeCompared(const std::vector<std::vector<SpherePicture>>& pictures, std:
         rows.emplace_back();
         for (std::size_t l = 0; l < pictures[first].size(); ++l) {
             const double stops = automaticExposure({&pictures[first][l], 1});
-            for (const std::size_t k : {first, first + 2, first + 1})
+            for (std::size_t k = first; k < first + each; ++k)
                 rows.back().push_back(exposed(pictures[k][l], stops));
         }
     }
