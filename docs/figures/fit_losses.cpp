@@ -7,9 +7,8 @@
 // spheres under the lights of `picture` (or those given) mean FLIP and relative L2, with the
 // largest FLIP of a pixel. For each loss, means over DATA, the worst of them, and the share of DATA
 // on which it is the best go to stdout; --of prints this of the rows of several CSV. --loss leaves
-// out other losses,
-// --metrics no the metrics of compare. --spheres writes a row for each DATA: for each light the
-// source and the fit by each loss, exposed for the source.
+// out other losses, --metrics no the metrics of compare. --spheres writes a row for each DATA: for
+// each light the source and the fit by each loss, exposed for the source.
 
 #include <brdfs/catalog.h>
 #include <brdfs/fit/fit.h>
