@@ -4,6 +4,7 @@
 #include <brdfs/catalog.h>
 #include <brdfs/repair.h>
 #include <hshfit/brdf/channel_view.h>
+#include <hshfit/pictures/sphere_albedo.h>
 #include <hshfit/projection/albedo.h>
 
 #include "bsdf_xml_files.h"
@@ -61,6 +62,25 @@ TEST(StepAlbedo, OnePatchThatReflectsIsFoundAtEveryAzimuth) {
             EXPECT_TRUE(found.converged);
             EXPECT_NEAR(found.values[0], shares[ring], 1e-5) << theta << " " << phi;
             EXPECT_LE(found.error, 1e-9);
+        }
+    }
+}
+
+/// Entries of the table of pictures are every 5 degrees; these are inside of patches.
+TEST(StepAlbedo, DomesOfPicturesFindTheOnePatchThatReflects) {
+    const auto brdf = mirrorLike();
+    using Detail = AlbedoTable::Detail;
+    for (const Detail detail : {Detail::fine, Detail::coarse}) {
+        const AlbedoTable table(*brdf, detail);
+        EXPECT_LE(table.error(), 1e-9);
+        for (const double theta : {10, 20, 30, 40, 50, 60, 70, 80}) {
+            for (const double phi : {0.0, 22.5, 45.0, 90.0, 180.0}) {
+                const Direction wo = directionFromAngles(radians(theta), radians(phi));
+                const int ring = ringOf(klemsFull, patchAt(klemsFull, wo.x, wo.y, wo.z));
+                double albedo = 0;
+                table.at(wo, {&albedo, 1});
+                EXPECT_NEAR(albedo, shares[ring], 1e-5) << theta << " " << phi;
+            }
         }
     }
 }
@@ -136,6 +156,23 @@ TEST(StepAlbedo, BothIntegralsOfATreeAreSumsOverItsCells) {
         EXPECT_LE(found.error, 1e-12);
         EXPECT_NEAR(directionalReflectance(*tree, w)[0], reflectance, 1e-12);
     }
+}
+
+TEST(StepAlbedo, DomesOfPicturesSumOverTheCellsOfATree) {
+    std::mt19937 random(11);
+    Cells cells;
+    for (double& value : cells.values)
+        value = random() % 40 == 0 ? static_cast<int>(random() % 64) / 16.0 : 0;
+    const AlbedoTable table(*cells.open());
+    const Direction wo = directionFromAngles(radians(40), radians(22.5));  // an entry
+    const auto [c, d] = shirleyChiu(-wo.x, wo.y);
+    const auto cell = [](double u) { return static_cast<int>(u * 8); };
+    double expected = 0, albedo = 0;
+    for (int p = 0; p < 8; ++p) {
+        for (int q = 0; q < 8; ++q) expected += pi / 64 * cells.at(p, q, cell(c), cell(d));
+    }
+    table.at(wo, {&albedo, 1});
+    EXPECT_NEAR(albedo, expected, 1e-12);
 }
 
 // Rings of wi in 8 steps of sin(theta_i), and wo seen from wi: dense sums over directions.

@@ -1,4 +1,6 @@
 #include <hshfit/pictures/sphere_albedo.h>
+
+#include <hshfit/brdf/steps.h>
 #include <hshfit/quadrature/quadrature.h>
 #include <hshfit/quadrature/ring_points.h>
 
@@ -18,19 +20,53 @@ struct Albedo {
     std::size_t notFinite = 0;
 };
 
-Albedo albedoAt(const Brdf& brdf, const Direction& wo, const std::vector<Lobe>& lobes,
-                int gridLevel) {
-    const HemisphereGrid grid =
-        gridFor(lobes, wo, {.order = 1, .level = gridLevel, .squeezed = true});
+/// The grid of a table ends at its steps: a cell without a node in it would be missed whole.
+HemisphereGrid gridAt(const Brdf& brdf, const Direction& wo, int gridLevel) {
+    const GridOptions options{.order = 1, .level = gridLevel, .squeezed = true};
+    if (dynamic_cast<const HasSteps*>(&brdf) == nullptr)
+        return gridFor(brdf.lobes(wo), wo, options);
+    return gridFor(brdf.lobes(wo), wo, options, brdf.kinks(wo), kinkCurvesOf(brdf, wo));
+}
+
+/// The sum over nodes at the centres of cells on the square, which is exact for tables of such
+/// cells.
+Albedo squareAlbedoAt(const Brdf& brdf, const Direction& wo, int levels) {
+    const std::size_t side = std::size_t{1} << levels, channels = brdf.channels().count();
+    const auto centre = [side](std::size_t k) {
+        return (static_cast<double>(k) + 0.5) / static_cast<double>(side);
+    };
+    const double weight = pi / static_cast<double>(side * side);
+    Albedo albedo{std::vector<double>(channels, 0.0), 0};
+    std::vector<double> x(side), y(side), z(side), f(channels * side);
+    for (std::size_t b = 0; b < side; ++b) {
+        for (std::size_t a = 0; a < side; ++a) {
+            const Direction wi = directionFromSquare({centre(a), centre(b)});
+            x[a] = wi.x, y[a] = wi.y, z[a] = wi.z;
+        }
+        brdf.eval(wo, {x.data(), y.data(), z.data(), side}, f.data());
+        for (std::size_t k = 0; k < f.size(); ++k) {
+            if (std::isfinite(f[k]))
+                albedo.values[k / side] += weight * f[k];
+            else
+                ++albedo.notFinite;
+        }
+    }
+    return albedo;
+}
+
+Albedo albedoAt(const Brdf& brdf, const Direction& wo, int gridLevel) {
+    if (const int levels = squareLevelsOf(brdf); levels > 0)
+        return squareAlbedoAt(brdf, wo, std::clamp(levels, 7, 8) + gridLevel - level);
+    const HemisphereGrid grid = gridAt(brdf, wo, gridLevel);
     Albedo albedo{std::vector<double>(brdf.channels().count(), 0.0), 0};
     std::vector<double> f;
     RingPoints points;
     for (const auto& panel : grid.panels) {
         points.start(panel);
-        const std::size_t count = points.count();
-        f.resize(count * albedo.values.size());
         for (std::size_t ring = panel.firstRing; ring < panel.firstRing + panel.rings; ++ring) {
             points.move(grid, ring);
+            const std::size_t count = points.count();
+            f.resize(count * albedo.values.size());
             brdf.eval(wo, points.directions(), f.data());
             for (std::size_t k = 0; k < f.size(); ++k) {
                 if (std::isfinite(f[k])) {
@@ -72,9 +108,8 @@ AlbedoTable::AlbedoTable(const Brdf& brdf, Detail detail)
     tbb::parallel_for(std::size_t{0}, entries, [&](std::size_t i) {
         const double phi = static_cast<double>(i % azimuths_) * azimuthStep_;
         const Direction wo = directionFromAngles(thetas_[i / azimuths_], phi);
-        const std::vector<Lobe> lobes = brdf.lobes(wo);
-        if (estimate) coarse[i] = albedoAt(brdf, wo, lobes, level - 1);
-        fine[i] = albedoAt(brdf, wo, lobes, level);
+        if (estimate) coarse[i] = albedoAt(brdf, wo, level - 1);
+        fine[i] = albedoAt(brdf, wo, level);
     });
     for (std::size_t i = 0; i < entries; ++i) {
         for (std::size_t c = 0; c < channels_; ++c) {

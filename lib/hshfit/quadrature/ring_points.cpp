@@ -2,26 +2,53 @@
 
 #include <hshfit/quadrature/azimuth_tables.h>
 
+#include <algorithm>
+
 namespace hshfit::inline quadrature {
+namespace {
+
+/// The azimuths of a ring with kinks once around: nodes of the half circle, then their mirror
+/// images.
+void cutNodes(const CutRing& ring, std::vector<double>& t, std::vector<double>& weights) {
+    ring.nodes(t, weights);
+    for (std::size_t j = ring.size(); j-- > 0;) {
+        t.push_back(2 * pi - t[j]);
+        weights.push_back(weights[j]);
+    }
+}
+
+}  // namespace
 
 void RingPoints::start(const HemisphereGrid::Panel& panel) {
     const std::size_t azimuths = panel.azimuths.spacing.azimuths;
     const double step = 2 * pi / static_cast<double>(azimuths);
-    cosine_.resize(azimuths);
-    sine_.resize(azimuths);
-    step_.resize(azimuths);
-    for (std::size_t j = 0; j < azimuths; ++j) {
-        const SpreadAzimuth at =
-            spreadAzimuth((static_cast<double>(j) + 0.5) * step, panel.azimuths.spacing);
-        const double cx = panel.azimuths.centreX, cy = panel.azimuths.centreY;
+    std::vector<double> t(azimuths), weights(azimuths, step);
+    for (std::size_t j = 0; j < azimuths; ++j) t[j] = (static_cast<double>(j) + 0.5) * step;
+    take(panel, t, weights);
+}
+
+void RingPoints::take(const HemisphereGrid::Panel& panel, const std::vector<double>& t,
+                      const std::vector<double>& weights) {
+    for (auto* values : {&cosine_, &sine_, &step_, &x_, &y_, &z_, &weights_})
+        values->resize(t.size());
+    const double cx = panel.azimuths.centreX, cy = panel.azimuths.centreY;
+    for (std::size_t j = 0; j < t.size(); ++j) {
+        const SpreadAzimuth at = spreadAzimuth(t[j], panel.azimuths.spacing);
         cosine_[j] = cx * at.cosine - cy * at.sine;
         sine_[j] = cy * at.cosine + cx * at.sine;
-        step_[j] = step * at.weight;
+        step_[j] = weights[j] * at.weight;
     }
-    for (auto* values : {&x_, &y_, &z_, &weights_}) values->resize(azimuths);
 }
 
 void RingPoints::move(const HemisphereGrid& grid, std::size_t ring) {
+    const auto after =
+        std::ranges::upper_bound(grid.panels, ring, {}, &HemisphereGrid::Panel::firstRing);
+    const HemisphereGrid::Panel& panel = *std::prev(after);
+    if (!panel.cuts.empty()) {
+        std::vector<double> t, weights;
+        cutNodes(panel.cuts[ring - panel.firstRing], t, weights);
+        take(panel, t, weights);
+    }
     const double sine = grid.sines[ring], height = grid.elevations[ring].mu;
     for (std::size_t j = 0; j < count(); ++j) {
         x_[j] = sine * cosine_[j];

@@ -16,7 +16,7 @@ public:
     /// Takes the azimuths of a panel.
     void start(const HemisphereGrid::Panel& panel);
     /// Takes a ring of that panel; `weights` are then the solid angles of its points, and sum over
-    /// the grid to 2 pi.
+    /// the grid to 2 pi. Rings that curves cross differ in `count`.
     void move(const HemisphereGrid& grid, std::size_t ring);
 
     std::size_t count() const { return cosine_.size(); }
@@ -25,6 +25,9 @@ public:
     double weight(std::size_t j) const { return weights_[j]; }
 
 private:
+    void take(const HemisphereGrid::Panel& panel, const std::vector<double>& t,
+              const std::vector<double>& weights);
+
     std::vector<double> cosine_, sine_, step_;  ///< d phi
     std::vector<double> x_, y_, z_, weights_;
 };

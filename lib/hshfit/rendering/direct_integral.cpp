@@ -1,6 +1,8 @@
 #include <hshfit/rendering/direct_integral.h>
 
+#include <hshfit/brdf/kink_curve.h>
 #include <hshfit/brdf/vectors.h>
+#include <hshfit/quadrature/ring_points.h>
 #include <hshfit/rendering/internal/light_cells.h>
 #include <hshfit/rendering/internal/panel_cells.h>
 
@@ -263,6 +265,45 @@ double extentOf(const Light& light) {
 
 constexpr int mostLevel = 12;
 
+/// The radiance of light that is the same from all directions; null for other lights.
+const Rgb* evenRadiance(const Light& light) {
+    const auto* disc = std::get_if<DiscLight>(&light);
+    return disc && disc->radius >= pi ? &disc->radiance : nullptr;
+}
+
+/// Nodes for even light: rings that follow the lobes of f, however narrow.
+class EvenNodes {
+public:
+    EvenNodes(const Brdf& brdf, const Direction& wo)
+        : wo_(wo),
+          lobes_(brdf.lobes(wo)),
+          kinks_(brdf.kinks(wo)),
+          curves_(kinkCurvesOf(brdf, wo)) {}
+
+    void add(const Rgb& radiance, int level, Evaluator& evaluator) const {
+        const HemisphereGrid grid =
+            gridFor(lobes_, wo_, {.order = 1, .level = level, .squeezed = true}, kinks_, curves_);
+        RingPoints points;
+        for (const auto& panel : grid.panels) {
+            points.start(panel);
+            for (std::size_t ring = panel.firstRing; ring < panel.firstRing + panel.rings; ++ring) {
+                points.move(grid, ring);
+                for (std::size_t j = 0; j < points.count(); ++j) {
+                    Rgb flux = radiance;
+                    for (double& value : flux) value *= points.weight(j);
+                    evaluator.add(points.direction(j), flux);
+                }
+            }
+        }
+    }
+
+private:
+    Direction wo_;
+    std::vector<Lobe> lobes_;
+    std::vector<double> kinks_;
+    std::vector<KinkCurve> curves_;
+};
+
 /// Share of a picture's flux times width, in radians, of its coarse cells, over the tolerance.
 constexpr double finestPerTolerance = 0.1;
 
@@ -334,7 +375,14 @@ PointRadiance DirectIntegral::at(const Brdf& brdf, const Frame& frame, const Dir
     const std::vector<Peak> peaks =
         parts_->compact.empty() ? std::vector<Peak>{} : peaksOf(brdf, wo);
     for (const Light& light : parts_->compact) {
+        const Rgb* even = evenRadiance(light);
         const auto sumAt = [&](int level) {
+            if (even) {
+                evaluator.clear();
+                EvenNodes(brdf, wo).add(*even, level, evaluator);
+                evaluator.evaluate();
+                return evaluator.sum(0, evaluator.count());
+            }
             const LightSamples samples = sampleLights({&light, 1}, frame, level);
             evaluator.clear();
             for (std::size_t k = 0; k < samples.count(); ++k) {
@@ -344,7 +392,7 @@ PointRadiance DirectIntegral::at(const Brdf& brdf, const Frame& frame, const Dir
             evaluator.evaluate();
             return evaluator.sum(0, evaluator.count());
         };
-        int level = firstLevel(light, frame, peaks);
+        int level = even ? 0 : firstLevel(light, frame, peaks);
         SignedSum sum = sumAt(level);
         if (std::holds_alternative<DirectionalLight>(light)) {
             add(total, sum);

@@ -1,5 +1,6 @@
 // Direct integration of functions that are below 0 at places.
 
+#include <hshfit/brdf/vectors.h>
 #include <hshfit/rendering/direct_integral.h>
 #include <hshfit/rendering/view.h>
 
@@ -26,6 +27,39 @@ TEST(DirectIntegral, SumsThatCancelEndWithoutCuttingCellsOnAndOn) {
     EXPECT_LT(found.evaluations, options.maxEvaluations / 8);
     EXPECT_LE(found.error, options.tolerance * 3 * whole);
     for (const double value : found.radiance) EXPECT_LE(std::abs(value), options.tolerance * whole);
+}
+
+/// f = exp(-|wi - m|^2 / (2 w^2)) / (2 pi w^2 m.z), with m the mirror direction of wo: a lobe of
+/// width w whose integral with the cosine is 1 + O(w^2) while m is well above the horizon.
+class Mirror : public test::FormulaBrdf {
+public:
+    explicit Mirror(double width)
+        : FormulaBrdf([width](const Direction& wi, const Direction& wo) {
+              const Direction gap = wi - mirrored(wo);
+              const double square = width * width;
+              return std::exp(-dot(gap, gap) / (2 * square)) / (2 * pi * square * wo.z);
+          }),
+          width_(width) {}
+    std::vector<Lobe> lobes(const Direction& wo) const override {
+        return {{.width = 2.5 * width_, .axis = mirrored(wo)}};
+    }
+
+private:
+    double width_;
+};
+
+TEST(DirectIntegral, NarrowLobesReflectEvenLightWithoutLoss) {
+    for (const double width : {1e-2, 1e-3, 1e-4}) {
+        const Mirror mirror(width);
+        const std::vector<Light> even = {DiscLight{{0, 0, 1}, pi, {1, 1, 1}}};
+        for (const double degree : {0.0, 33.0, 60.0, 75.0}) {
+            const IntegrationOptions options;
+            const PointRadiance found = DirectIntegral(even).at(
+                mirror, frameAt({0.6, 0, 0.8}), directionFromAngles(radians(degree), 0.4), options);
+            EXPECT_FALSE(found.cut);
+            EXPECT_NEAR(found.radiance[0], 1, options.tolerance) << width << " " << degree;
+        }
+    }
 }
 
 }  // namespace
