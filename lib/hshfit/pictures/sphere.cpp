@@ -65,6 +65,18 @@ public:
     const std::string& colours() const { return colour_.what(); }
     bool isotropic() const { return brdf_.laws().isotropic; }
 
+    /// The width, in radians of the normal, of the highlight of a light in the mirror direction.
+    double highlightWidth(const Direction& wo) const {
+        double width = 1;
+        for (const Lobe& lobe : brdf_.lobes(wo)) {
+            if (lobe.about == Lobe::About::halfway)
+                width = std::min(width, lobe.width);
+            else if (dot(lobe.axis, mirrored(wo)) > 0.999)
+                width = std::min(width, lobe.width / 2);  // a normal turns by half of the angle
+        }
+        return width;
+    }
+
     /// Directions to the lights that are above points.
     struct Lit {
         std::vector<double> x = {}, y = {}, z = {}, weight = {}, f = {};
@@ -151,6 +163,14 @@ public:
           symmetries_(shader.isotropic() ? 8 : 1),
           picture_(picture) {}
 
+    /// Draws a pixel with so many times as many samples along an edge.
+    std::size_t drawAgain(const Cell& pixel, std::size_t times) {
+        samples_ *= times;
+        symmetries_ = 1;
+        drawAlike(pixel);
+        return points_.notFinite;
+    }
+
     /// Rows of pixels that stand for all.
     std::size_t rows() const { return symmetries_ > 1 ? (size_ + 1) / 2 : size_; }
 
@@ -212,6 +232,36 @@ private:
     std::vector<std::size_t> symmetriesOfPixels_ = {};
 };
 
+/// The samples of a pixel along an edge, at most, where a highlight is narrow.
+constexpr double mostSamples = 128;
+
+/// Draws the pixels about the mirror image of each light again, where an isotropic highlight is
+/// narrower than twice the distance of samples and would be hit or missed by chance.
+void sharpenHighlights(const Shader& shader, const SphereOptions& options, SpherePicture& picture) {
+    if (!shader.isotropic()) return;
+    const double half = options.size / 2.0;
+    for (const SphereLight& light : options.rig.lights) {
+        const Direction& l = light.towards;
+        const double length = std::sqrt(l.x * l.x + l.y * l.y + (l.z + 1) * (l.z + 1));
+        const double z = length / 2;  // of the normal, in the middle of light and viewer
+        if (z < 0.01) continue;
+        const double distance = 1 / (half * options.samples * sphereRadius * z);
+        const double width = shader.highlightWidth({std::sqrt(std::max(0.0, 1 - z * z)), 0, z}) / 2;
+        if (distance <= width) continue;
+        const auto times = static_cast<std::size_t>(
+            std::min(std::ceil(distance / width), std::ceil(mostSamples / options.samples)));
+        const int column = static_cast<int>(half * (1 + sphereRadius * l.x / length));
+        const int row = static_cast<int>(half * (1 - sphereRadius * l.y / length));
+        for (int k = 0; k < 9; ++k) {
+            const int y = row + k / 3 - 1, x = column + k % 3 - 1;
+            if (std::min(x, y) < 0 || std::max(x, y) >= options.size) continue;
+            picture.notFinite +=
+                Painter(shader, options, picture)
+                    .drawAgain({static_cast<std::size_t>(y), static_cast<std::size_t>(x)}, times);
+        }
+    }
+}
+
 SpherePicture render(const Brdf& brdf, const AlbedoTable* albedo, const SphereOptions& options) {
     const Shader shader(brdf, albedo, options.rig);
     const auto size = static_cast<std::size_t>(options.size);
@@ -228,6 +278,7 @@ SpherePicture render(const Brdf& brdf, const AlbedoTable* albedo, const SphereOp
         if (options.progress) options.progress(++done, rows);
     });
     for (const std::size_t count : notFinite) picture.notFinite += count;
+    sharpenHighlights(shader, options, picture);
     return picture;
 }
 

@@ -138,6 +138,44 @@ TEST(Sphere, TheFrameIsTheDocumentedOne) {
     }
 }
 
+/// A mirror that is blurred by w radians: f = exp(-|wi - m|^2 / (2 w^2)) / (2 pi w^2 m.z), with m
+/// the mirror direction of wo.
+class BlurredMirror : public FormulaBrdf {
+public:
+    explicit BlurredMirror(double w)
+        : FormulaBrdf([w](const Direction& wi, const Direction& wo) {
+              const double x = wi.x + wo.x, y = wi.y + wo.y, z = wi.z - wo.z;
+              return std::exp(-(x * x + y * y + z * z) / (2 * w * w)) / (2 * pi * w * w * wo.z);
+          }),
+          w_(w) {}
+    std::vector<Lobe> lobes(const Direction& wo) const override {
+        return {{.width = 2.5 * w_, .axis = mirrored(wo)}};
+    }
+
+private:
+    double w_;
+};
+
+/// A mirror sphere of radius R scatters R^2/4 of a beam into each steradian, whatever the
+/// direction: its picture sums to E R^2/4, with the irradiance E = pi strength.
+TEST(Sphere, NarrowHighlightsHaveTheFluxOfAMirror) {
+    constexpr int size = 32;
+    const double radius = 0.96 * size / 2, expected = pi * radius * radius / 4;
+    for (const double w : {3e-2, 1e-2, 3e-3, 2e-3}) {
+        for (const double theta : {0.0, 20.0, 45.0, 75.0, 110.0}) {
+            for (const double phi : {-30.0, 100.0, 135.0}) {
+                const Direction towards = directionFromAngles(radians(theta), radians(phi));
+                const SpherePicture picture = renderSphere(
+                    BlurredMirror(w), {.rig = {.lights = {{towards, 1}}, .dome = 0}, .size = size});
+                double sum = 0;
+                for (std::size_t k = 0; k < picture.coverage.size(); ++k)
+                    sum += picture.coverage[k] * picture.radiance[3 * k];
+                EXPECT_NEAR(sum / expected, 1, 0.05) << w << " " << theta << " " << phi;
+            }
+        }
+    }
+}
+
 TEST(Sphere, DomeShowsTheAlbedo) {
     // f = a (wi.x wo.x)^2: albedo a wo.x^2 pi / 4, as the integral of cos sin^3 is 1/4. Linear
     // interpolation over h is off by h^2/8 times the second derivative, which is at most 2 for
