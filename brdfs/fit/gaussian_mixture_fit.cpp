@@ -292,7 +292,9 @@ void requireFittable(const Brdf& brdf, const OutgoingSet& outgoing,
                      const GaussianFitOptions& options) {
     if (!brdf.laws().isotropic || !brdf.laws().mirrorSymmetric)
         throw UsageError(fmt::format(
-            "{}: mixtures about the mirror direction are of isotropic BRDFs", brdf.name()));
+            "{}: mixtures about the mirror direction are of BRDFs that are isotropic and mirror "
+            "symmetric",
+            brdf.name()));
     if (outgoing.map == OutgoingSet::Map::parabolic)
         throw UsageError("a map of outgoing directions: give elevations (16) or one (45,0)");
     if (options.loss == Loss::Kind::picture)

@@ -8,6 +8,7 @@
 
 #include <brdfs/measured_files.h>
 #include <gtest/gtest.h>
+#include <lib/formula_brdf.h>
 #include <tbb/global_control.h>
 #include <nlohmann/json.hpp>
 
@@ -204,6 +205,15 @@ TEST(GaussianMixture, RefusesWhatItCannotFit) {
     EXPECT_THROW(fitGaussians(*open("lambert"), OutgoingSet::parabolic(4, 4)), UsageError);
     EXPECT_THROW(fitGaussians(*open("lambert"), one, {.lobes = 0}), UsageError);
     EXPECT_THROW(fitGaussians(*open("lambert:kd=0"), one), NumericError);
+    // As measured files: isotropic, and the mirror images are measured separately.
+    const test::FormulaBrdf lopsided(
+        [](const Direction& wi, const Direction& wo) { return 1 + wi.x * wo.y; });
+    try {
+        fitGaussians(lopsided, one);
+        FAIL();
+    } catch (const UsageError& error) {
+        EXPECT_NE(std::string(error.what()).find("mirror symmetric"), std::string::npos);
+    }
 }
 
 TEST(GaussianMixtureFile, IsReadBack) {
