@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace hshfit::inline rendering {
 namespace {
@@ -265,22 +266,22 @@ double extentOf(const Light& light) {
 
 constexpr int mostLevel = 12;
 
-/// The radiance of light that is the same from all directions; null for other lights.
-const Rgb* evenRadiance(const Light& light) {
-    const auto* disc = std::get_if<DiscLight>(&light);
-    return disc && disc->radius >= pi ? &disc->radiance : nullptr;
-}
-
-/// Nodes for even light: rings that follow the lobes of f, however narrow.
-class EvenNodes {
+/// Nodes for a disc of light, or for even light from all around: rings that follow the lobes of f,
+/// however narrow, and end at the disc's edge.
+class DiscNodes {
 public:
-    EvenNodes(const Brdf& brdf, const Direction& wo)
-        : wo_(wo),
+    DiscNodes(const DiscLight& light, const Frame& frame, const Brdf& brdf, const Direction& wo)
+        : radiance_(light.radiance),
+          axis_(frame.toLocal(light.towards)),
+          least_(light.radius < pi ? std::cos(light.radius) : -2),
+          wo_(wo),
           lobes_(brdf.lobes(wo)),
           kinks_(brdf.kinks(wo)),
-          curves_(kinkCurvesOf(brdf, wo)) {}
+          curves_(kinkCurvesOf(brdf, wo)) {
+        if (light.radius < pi) curves_.push_back(circleAbout(axis_, least_));
+    }
 
-    void add(const Rgb& radiance, int level, Evaluator& evaluator) const {
+    void add(int level, Evaluator& evaluator) const {
         const HemisphereGrid grid =
             gridFor(lobes_, wo_, {.order = 1, .level = level, .squeezed = true}, kinks_, curves_);
         RingPoints points;
@@ -289,7 +290,8 @@ public:
             for (std::size_t ring = panel.firstRing; ring < panel.firstRing + panel.rings; ++ring) {
                 points.move(grid, ring);
                 for (std::size_t j = 0; j < points.count(); ++j) {
-                    Rgb flux = radiance;
+                    if (dot(points.direction(j), axis_) < least_) continue;
+                    Rgb flux = radiance_;
                     for (double& value : flux) value *= points.weight(j);
                     evaluator.add(points.direction(j), flux);
                 }
@@ -298,6 +300,9 @@ public:
     }
 
 private:
+    Rgb radiance_;
+    Direction axis_;
+    double least_;
     Direction wo_;
     std::vector<Lobe> lobes_;
     std::vector<double> kinks_;
@@ -333,6 +338,9 @@ int firstLevel(const Light& light, const Frame& frame, std::span<const Peak> pea
                      : std::min(mostLevel - 1,
                                 static_cast<int>(std::ceil(std::log(more) / std::log(1.5))));
 }
+
+/// The first level at which nodes that follow a disc are more than nodes that follow lobes.
+constexpr int fineLevel = 5;
 
 }  // namespace
 
@@ -375,15 +383,21 @@ PointRadiance DirectIntegral::at(const Brdf& brdf, const Frame& frame, const Dir
     const std::vector<Peak> peaks =
         parts_->compact.empty() ? std::vector<Peak>{} : peaksOf(brdf, wo);
     for (const Light& light : parts_->compact) {
-        const Rgb* even = evenRadiance(light);
-        const auto sumAt = [&](int level) {
-            if (even) {
+        int level = firstLevel(light, frame, peaks);
+        std::optional<DiscNodes> nodes;
+        if (const auto* disc = std::get_if<DiscLight>(&light);
+            disc && (level >= fineLevel || disc->radius >= pi)) {
+            nodes.emplace(*disc, frame, brdf, wo);
+            level = 0;
+        }
+        const auto sumAt = [&](int at) {
+            if (nodes) {
                 evaluator.clear();
-                EvenNodes(brdf, wo).add(*even, level, evaluator);
+                nodes->add(at, evaluator);
                 evaluator.evaluate();
                 return evaluator.sum(0, evaluator.count());
             }
-            const LightSamples samples = sampleLights({&light, 1}, frame, level);
+            const LightSamples samples = sampleLights({&light, 1}, frame, at);
             evaluator.clear();
             for (std::size_t k = 0; k < samples.count(); ++k) {
                 evaluator.add({samples.x[k], samples.y[k], samples.z[k]},
@@ -392,7 +406,6 @@ PointRadiance DirectIntegral::at(const Brdf& brdf, const Frame& frame, const Dir
             evaluator.evaluate();
             return evaluator.sum(0, evaluator.count());
         };
-        int level = even ? 0 : firstLevel(light, frame, peaks);
         SignedSum sum = sumAt(level);
         if (std::holds_alternative<DirectionalLight>(light)) {
             add(total, sum);

@@ -48,6 +48,21 @@ private:
     double width_;
 };
 
+/// The mirror image of a disc of 30 degrees about the normal: 1 inside and 0 outside.
+TEST(DirectIntegral, NarrowLobesReflectWideDiscsWithSharpEdges) {
+    const Direction normal{0.6, 0, 0.8};
+    const std::vector<Light> disc = {DiscLight{normal, radians(30), {1, 1, 1}}};
+    const Mirror mirror(1e-3);
+    for (const double degree : {0.0, 12.0, 29.0, 33.0, 50.0}) {
+        const IntegrationOptions options;
+        const PointRadiance found = DirectIntegral(disc).at(
+            mirror, frameAt(normal), directionFromAngles(radians(degree), 0.4), options);
+        EXPECT_FALSE(found.cut);
+        EXPECT_LT(found.evaluations, 100000u);
+        EXPECT_NEAR(found.radiance[0], degree < 30 ? 1 : 0, options.tolerance) << degree;
+    }
+}
+
 TEST(DirectIntegral, NarrowLobesReflectEvenLightWithoutLoss) {
     for (const double width : {1e-2, 1e-3, 1e-4}) {
         const Mirror mirror(width);
