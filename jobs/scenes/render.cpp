@@ -2,6 +2,7 @@
 
 #include <jobs/common/clock.h>
 #include <jobs/common/inputs.h>
+#include <jobs/source/quality.h>
 #include <jobs/source/source.h>
 
 #include <hshfit/bases/catalog.h>
@@ -255,6 +256,8 @@ public:
             materials_.push_back({.brdf = openSource(spec, /*rgb=*/true, Sides::either)});
             materials_.back().name = shownName(spec, *materials_.back().brdf);
             remarkOwnSum(materials_.back(), options_, listener_);
+            const std::string poor = poorContents(*materials_.back().brdf);
+            if (!poor.empty()) listener_.say(materials_.back().name + ": " + poor);
             const Brdf &first = *materials_.front().brdf, &last = *materials_.back().brdf;
             if (transmits(first) != transmits(last))
                 throw UsageError(

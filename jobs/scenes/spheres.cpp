@@ -3,6 +3,7 @@
 #include "render.h"
 
 #include <jobs/common/inputs.h>
+#include <jobs/source/quality.h>
 #include <jobs/source/source.h>
 
 #include <hshfit/brdf/transmission.h>
@@ -29,10 +30,13 @@ SphereSheet render(const std::vector<std::string>& sources, const std::string& o
                             "dark; expected a sky or a picture as light",
                             brdf->name()));
         const std::string name = shownName(source, *brdf);
+        const std::string poor = poorContents(*brdf);
+        if (!poor.empty()) listener.say(name + ": " + poor);
         const SpherePicture& picture =
             pictures.emplace_back(renderSphere(*brdf, {.rig = options.rig,
                                                        .size = options.size,
                                                        .samples = options.samples,
+                                                       .sharpened = true,
                                                        .progress = listener.part(name)}));
         brdf->checkIntact();
         const std::size_t column = result.spheres.size() * static_cast<std::size_t>(options.size);

@@ -251,6 +251,23 @@ std::optional<double> capturedShare(const Projection& projection, const Brdf& so
     return hshfit::capturedShare(projection);
 }
 
+std::optional<double> capturedShare(const Coefficients& coefficients) {
+    const Energy& energy = coefficients.energy;
+    if (coefficients.leastSquares || !energy.finite || !(energy.value > 0)) return std::nullopt;
+    const std::vector<double> c = normalised(coefficients);
+    return product(coefficients.outgoing, c, c) / energy.value;
+}
+
+std::string poorContents(const Brdf& opened) {
+    const auto* plain = dynamic_cast<const Reconstruction*>(&opened);
+    if (!plain) return {};
+    const auto share = capturedShare(plain->coefficients());
+    if (!share || !poorReason(share, {})) return {};
+    return fmt::format(
+        "poor: {} of the energy of {} is captured, and pictures are of another material",
+        percent(*share), plain->coefficients().source);
+}
+
 std::optional<double> capturedShare(const Representation& kept, const Brdf& source,
                                     const std::optional<PairSummary>& pairs) {
     const CoefficientHead& head = kept.head;

@@ -42,6 +42,13 @@ std::optional<double> capturedShare(const Projection& projection, const Brdf& so
 std::optional<double> capturedShare(const Representation& kept, const Brdf& source,
                                     const std::optional<PairSummary>& pairs = {});
 
+/// The same for coefficients from a file, without their source: none for least squares, and where
+/// the file has no energy.
+std::optional<double> capturedShare(const Coefficients& coefficients);
+/// The reason why the coefficients of an opened file are poor, by the energy that they capture of
+/// their source; empty where they are not, and for other BRDFs.
+std::string poorContents(const Brdf& opened);
+
 /// The function of whose energy capturedShare is a share: "f", "f cos(theta_i)" or
 /// "f cos(theta_i) cos(theta_o)".
 std::string_view capturedFunction(const Projection& projection);

@@ -1,6 +1,7 @@
 #include "info.h"
 
 #include <jobs/common/shared_options.h>
+#include <jobs/source/quality.h>
 #include <jobs/source/source.h>
 
 #include <hshfit/accuracy/isotropy.h>
@@ -141,6 +142,8 @@ BrdfInfo describeSource(const std::string& source, const InfoOptions& options,
         std::string reason = likeness.empty() ? repair.reason(brdf, *info.health) : "";
         if (!reason.empty()) info.repairs.push_back({repair.name, std::move(reason)});
     }
+    if (std::string poor = poorContents(brdf); !poor.empty())
+        info.warnings.push_back(std::move(poor));
     findRange(info);
     warn(info, reflectance.get(), likeness);
     info.exportedForm = gpu::readIfForm(source, sourceOpener());

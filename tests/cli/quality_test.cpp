@@ -104,6 +104,29 @@ TEST_F(Quality, LittleEnergyCapturedIsCalledPoor) {
 }
 
 // An order where one up to 24 suffices, and else the halfway form.
+/// Who has the file alone is told what `project` said.
+TEST_F(Quality, AFileThatCapturesLittleIsCalledPoorWhereItIsLookedAt) {
+    for (const bool poor : {true, false}) {
+        const std::string file = path(poor ? "poor.json" : "good.json");
+        const double share =
+            answerOf("project " + std::string(poor ? "phong:exponent=200" : "lambert") +
+                         " --outgoing 8 --order 4 -o " + file,
+                     poor)["accuracy"];
+        for (const std::string& command :
+             {"info " + file, "render --size 16 -o " + path("x.png") + " --force " + file}) {
+            const Answer answer = run(command);
+            ASSERT_EQ(answer.code, 0) << answer.err;
+            const std::string words = "poor: ";
+            const std::string all = answer.out + answer.err;
+            const std::size_t at = all.find(words);
+            ASSERT_EQ(at != std::string::npos, poor) << all;
+            if (poor) {
+                EXPECT_NEAR(std::stod(all.substr(at + words.size())), 100 * share, 0.05);
+            }
+        }
+    }
+}
+
 TEST_F(Quality, AReportNamesTheCallThatCapturesMore) {
     for (const std::string spec : {"phong:exponent=150", "ggx:alpha=.03"}) {
         const Json entry =

@@ -238,7 +238,7 @@ constexpr double mostSamples = 128;
 /// Draws the pixels about the mirror image of each light again, where an isotropic highlight is
 /// narrower than twice the distance of samples and would be hit or missed by chance.
 void sharpenHighlights(const Shader& shader, const SphereOptions& options, SpherePicture& picture) {
-    if (!shader.isotropic()) return;
+    if (!options.sharpened || !shader.isotropic()) return;
     const double half = options.size / 2.0;
     for (const SphereLight& light : options.rig.lights) {
         const Direction& l = light.towards;

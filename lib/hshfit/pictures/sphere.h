@@ -32,6 +32,10 @@ struct SphereOptions {
     SphereRig rig = {};
     int size = 256;   ///< pixels along an edge of the square picture
     int samples = 3;  ///< 3 x 3 a pixel, so that edges and highlights have no steps
+    /// More samples in the nine pixels about the mirror image of a light whose isotropic highlight
+    /// is narrower than their distance, by Brdf::lobes. Pictures that are compared go without: the
+    /// two of a pair need not know their lobes alike.
+    bool sharpened = false;
     std::function<void(std::size_t, std::size_t)> progress = {};
 };
 

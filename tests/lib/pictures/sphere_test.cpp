@@ -165,8 +165,10 @@ TEST(Sphere, NarrowHighlightsHaveTheFluxOfAMirror) {
         for (const double theta : {0.0, 20.0, 45.0, 75.0, 110.0}) {
             for (const double phi : {-30.0, 100.0, 135.0}) {
                 const Direction towards = directionFromAngles(radians(theta), radians(phi));
-                const SpherePicture picture = renderSphere(
-                    BlurredMirror(w), {.rig = {.lights = {{towards, 1}}, .dome = 0}, .size = size});
+                const SpherePicture picture =
+                    renderSphere(BlurredMirror(w), {.rig = {.lights = {{towards, 1}}, .dome = 0},
+                                                    .size = size,
+                                                    .sharpened = true});
                 double sum = 0;
                 for (std::size_t k = 0; k < picture.coverage.size(); ++k)
                     sum += picture.coverage[k] * picture.radiance[3 * k];
