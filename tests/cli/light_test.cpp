@@ -477,7 +477,7 @@ TEST_F(Lights, IrradianceStatesTheErrorOfTheNumbersThatItPrints) {
     EXPECT_NEAR(twenty["nine"]["error"]["maximum"], error, 1e-6 * error);
     EXPECT_LT(twenty["error"]["maximum"], 0.5 * error);
     // The text has both.
-    const std::string said = fmt::format("error at most {:.2f} %", 100 * error);
+    const std::string said = fmt::format("error at most {:.3g} %", 100 * error);
     EXPECT_NE(run(call + "20").out.find("order 3, as below  108 bytes  " + said), std::string::npos)
         << said;
 }
