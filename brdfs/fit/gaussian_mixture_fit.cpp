@@ -298,7 +298,9 @@ void requireFittable(const Brdf& brdf, const OutgoingSet& outgoing,
     if (outgoing.map == OutgoingSet::Map::parabolic)
         throw UsageError("a map of outgoing directions: give elevations (16) or one (45,0)");
     if (options.loss == Loss::Kind::picture)
-        throw UsageError("the loss picture is of fits with lights; of Gaussians: cube-root");
+        throw UsageError(
+            "the loss picture needs lights, and fits of Gaussians have none; expected "
+            "cube-root, or another loss of values");
     if (options.lobes < 1 || options.lobes > 16)
         throw UsageError(fmt::format("{} lobes: from 1 to 16 are possible", options.lobes));
 }

@@ -42,8 +42,8 @@ std::optional<double> capturedShare(const Projection& projection, const Brdf& so
 std::optional<double> capturedShare(const Representation& kept, const Brdf& source,
                                     const std::optional<PairSummary>& pairs = {});
 
-/// The same for coefficients from a file, without their source: none for least squares, and where
-/// the file has no energy.
+/// The share that coefficients from a file capture, without their source: none for least squares,
+/// and where the file has no energy.
 std::optional<double> capturedShare(const Coefficients& coefficients);
 /// The reason why the coefficients of an opened file are poor, by the energy that they capture of
 /// their source; empty where they are not, and for other BRDFs.

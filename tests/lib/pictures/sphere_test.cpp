@@ -5,6 +5,7 @@
 #include <hshfit/pictures/rgb_picture.h>
 #include <hshfit/pictures/sphere_picture.h>
 
+#include "lib/blurred_mirror.h"
 #include "lib/coefficient_files/coefficient_samples.h"
 #include "lib/formula_brdf.h"
 
@@ -22,6 +23,7 @@
 using namespace hshfit;
 using samples::contentOf;
 using samples::Folder;
+using test::BlurredMirror;
 using test::FormulaBrdf;
 
 namespace {
@@ -137,24 +139,6 @@ TEST(Sphere, TheFrameIsTheDocumentedOne) {
         EXPECT_GT(compared, 500);
     }
 }
-
-/// A mirror that is blurred by w radians: f = exp(-|wi - m|^2 / (2 w^2)) / (2 pi w^2 m.z), with m
-/// the mirror direction of wo.
-class BlurredMirror : public FormulaBrdf {
-public:
-    explicit BlurredMirror(double w)
-        : FormulaBrdf([w](const Direction& wi, const Direction& wo) {
-              const double x = wi.x + wo.x, y = wi.y + wo.y, z = wi.z - wo.z;
-              return std::exp(-(x * x + y * y + z * z) / (2 * w * w)) / (2 * pi * w * w * wo.z);
-          }),
-          w_(w) {}
-    std::vector<Lobe> lobes(const Direction& wo) const override {
-        return {{.width = 2.5 * w_, .axis = mirrored(wo)}};
-    }
-
-private:
-    double w_;
-};
 
 /// A mirror sphere of radius R scatters R^2/4 of a beam into each steradian, whatever the
 /// direction: its picture sums to E R^2/4, with the irradiance E = pi strength.

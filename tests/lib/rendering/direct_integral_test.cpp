@@ -1,9 +1,9 @@
 // Direct integration of functions that are below 0 at places.
 
-#include <hshfit/brdf/vectors.h>
 #include <hshfit/rendering/direct_integral.h>
 #include <hshfit/rendering/view.h>
 
+#include "lib/blurred_mirror.h"
 #include "lib/formula_brdf.h"
 
 #include <gtest/gtest.h>
@@ -29,30 +29,11 @@ TEST(DirectIntegral, SumsThatCancelEndWithoutCuttingCellsOnAndOn) {
     for (const double value : found.radiance) EXPECT_LE(std::abs(value), options.tolerance * whole);
 }
 
-/// f = exp(-|wi - m|^2 / (2 w^2)) / (2 pi w^2 m.z), with m the mirror direction of wo: a lobe of
-/// width w whose integral with the cosine is 1 + O(w^2) while m is well above the horizon.
-class Mirror : public test::FormulaBrdf {
-public:
-    explicit Mirror(double width)
-        : FormulaBrdf([width](const Direction& wi, const Direction& wo) {
-              const Direction gap = wi - mirrored(wo);
-              const double square = width * width;
-              return std::exp(-dot(gap, gap) / (2 * square)) / (2 * pi * square * wo.z);
-          }),
-          width_(width) {}
-    std::vector<Lobe> lobes(const Direction& wo) const override {
-        return {{.width = 2.5 * width_, .axis = mirrored(wo)}};
-    }
-
-private:
-    double width_;
-};
-
 /// The mirror image of a disc of 30 degrees about the normal: 1 inside and 0 outside.
 TEST(DirectIntegral, NarrowLobesReflectWideDiscsWithSharpEdges) {
     const Direction normal{0.6, 0, 0.8};
     const std::vector<Light> disc = {DiscLight{normal, radians(30), {1, 1, 1}}};
-    const Mirror mirror(1e-3);
+    const test::BlurredMirror mirror(1e-3);
     for (const double degree : {0.0, 12.0, 29.0, 33.0, 50.0}) {
         const IntegrationOptions options;
         const PointRadiance found = DirectIntegral(disc).at(
@@ -65,7 +46,7 @@ TEST(DirectIntegral, NarrowLobesReflectWideDiscsWithSharpEdges) {
 
 TEST(DirectIntegral, NarrowLobesReflectEvenLightWithoutLoss) {
     for (const double width : {1e-2, 1e-3, 1e-4}) {
-        const Mirror mirror(width);
+        const test::BlurredMirror mirror(width);
         const std::vector<Light> even = {DiscLight{{0, 0, 1}, pi, {1, 1, 1}}};
         for (const double degree : {0.0, 33.0, 60.0, 75.0}) {
             const IntegrationOptions options;
