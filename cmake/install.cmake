@@ -92,8 +92,9 @@ function(hshfit_install_documents)
           DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
   install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation
           FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg" PATTERN schemas EXCLUDE
-          PATTERN site EXCLUDE)
-  install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
+          PATTERN site EXCLUDE PATTERN __pycache__ EXCLUDE)
+  install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation
+          PATTERN __pycache__ EXCLUDE)
   install(DIRECTORY docs/schemas
           DESTINATION ${CMAKE_INSTALL_DATADIR}/hshfit COMPONENT program)
 endfunction()

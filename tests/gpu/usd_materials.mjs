@@ -2,7 +2,7 @@
 // UsdPreviewSurface and the mesh are those that were given. A layer cut off, a renamed input and a
 // material that is bound to nothing have to be found. Ends with 77 where the npm packages are missing.
 import { execFileSync } from 'node:child_process';
-import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { copyFileSync, existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -17,7 +17,11 @@ const { USDLoader } = await import('three/addons/loaders/USDLoader.js');
 // TinyUSDZ is compiled for pages: it refuses Node unless that looks like a page.
 process.type = 'renderer';
 globalThis.window = globalThis;
-const { default: makeTiny } = await import('tinyusdz/tinyusdz.js');
+// Node 18 takes a file as a module by the end of its name alone.
+const scratch = mkdtempSync(join(tmpdir(), 'tinyusdz-'));
+copyFileSync(join(packages, 'tinyusdz/tinyusdz.js'), join(scratch, 'tinyusdz.mjs'));
+const { default: makeTiny } = await import(join(scratch, 'tinyusdz.mjs'));
+rmSync(scratch, { recursive: true });
 const wasm = readFileSync(join(packages, 'tinyusdz/tinyusdz.wasm'));
 const tiny = await makeTiny({
   print() {},

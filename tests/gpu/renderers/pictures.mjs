@@ -1,7 +1,7 @@
 // Float pictures of the trials: read, compared and put on a sheet. A picture is
 // { size, pixels: Float32Array of RGBA, rows from the bottom up }.
 import { readFileSync, writeFileSync } from 'node:fs';
-import { deflateSync, crc32 } from 'node:zlib';
+import { deflateSync } from 'node:zlib';
 
 // Of an OpenEXR file; three.js gives rows from the bottom up.
 export async function readExr(path) {
@@ -48,6 +48,16 @@ export function difference(expected, found) {
 }
 
 const encoded = (x) => (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055);
+
+/// The checksum of PNG chunks (ISO 3309), which zlib of Node 18 does not give.
+function crc32(bytes) {
+  let rest = 0xffffffff;
+  for (const byte of bytes) {
+    rest ^= byte;
+    for (let bit = 0; bit < 8; ++bit) rest = (rest >>> 1) ^ (rest & 1 ? 0xedb88320 : 0);
+  }
+  return ~rest >>> 0;
+}
 
 function png(width, height, rgb) {
   const chunk = (type, data) => {
