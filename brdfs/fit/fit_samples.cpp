@@ -157,22 +157,18 @@ NodesOfOne nodesOfOne(const Brdf& data, const Direction& wo, double solidAngle, 
     NodesOfOne nodes;
     const std::size_t channels = data.channels().count();
     const HemisphereGrid grid = gridFor(data.lobes(wo), wo, {.level = level, .squeezed = true});
-    RingPoints points;
+    RingPoints points(grid);
     std::vector<double> f;
-    for (const auto& panel : grid.panels) {
-        points.start(panel);
-        for (std::size_t ring = panel.firstRing; ring < panel.firstRing + panel.rings; ++ring) {
-            points.move(grid, ring);
-            const std::size_t count = points.count(), first = nodes.covered.size();
-            f.resize(channels * count);
-            data.eval(wo, points.directions(), f.data());
-            nodes.covered.resize(first + count, 1);
-            if (!everywhere) data.coverage(wo, points.directions(), nodes.covered.data() + first);
-            for (std::size_t j = 0; j < count; ++j) {
-                nodes.wi.push_back(points.direction(j));
-                nodes.weights.push_back(solidAngle * points.weight(j));
-                for (std::size_t c = 0; c < channels; ++c) nodes.values.push_back(f[c * count + j]);
-            }
+    while (points.next()) {
+        const std::size_t count = points.count(), first = nodes.covered.size();
+        f.resize(channels * count);
+        data.eval(wo, points.directions(), f.data());
+        nodes.covered.resize(first + count, 1);
+        if (!everywhere) data.coverage(wo, points.directions(), nodes.covered.data() + first);
+        for (std::size_t j = 0; j < count; ++j) {
+            nodes.wi.push_back(points.direction(j));
+            nodes.weights.push_back(solidAngle * points.weight(j));
+            for (std::size_t c = 0; c < channels; ++c) nodes.values.push_back(f[c * count + j]);
         }
     }
     return nodes;

@@ -39,18 +39,14 @@ Slice sliceOf(const Brdf& brdf, double theta, int level) {
                         "lobe is too narrow",
                         brdf.name(), degrees(theta), grid.points(), mostPoints));
     std::vector<double> x, y, z;
-    RingPoints points;
-    for (const auto& panel : grid.panels) {
-        points.start(panel);
-        for (std::size_t ring = panel.firstRing; ring < panel.firstRing + panel.rings; ++ring) {
-            points.move(grid, ring);
-            for (std::size_t j = 0; j < points.count() / 2; ++j) {
-                slice.wi.push_back(points.direction(j));
-                slice.areas.push_back(2 * points.weight(j));
-                x.push_back(slice.wi.back().x);
-                y.push_back(slice.wi.back().y);
-                z.push_back(slice.wi.back().z);
-            }
+    RingPoints points(grid);
+    while (points.next()) {
+        for (std::size_t j = 0; j < points.count() / 2; ++j) {
+            slice.wi.push_back(points.direction(j));
+            slice.areas.push_back(2 * points.weight(j));
+            x.push_back(slice.wi.back().x);
+            y.push_back(slice.wi.back().y);
+            z.push_back(slice.wi.back().z);
         }
     }
     slice.values.resize(slice.channels * slice.wi.size());

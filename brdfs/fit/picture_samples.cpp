@@ -165,17 +165,13 @@ public:
         const HemisphereGrid grid =
             gridFor(data.lobes(wo), wo,
                     {.order = order_, .level = level_, .squeezed = true, .even = isotropic_});
-        RingPoints points;
-        for (const auto& panel : grid.panels) {
-            points.start(panel);
-            for (std::size_t ring = panel.firstRing; ring < panel.firstRing + panel.rings; ++ring) {
-                points.move(grid, ring);
-                if (points.direction(0).z < lowest_) continue;
-                // The other half of the ring are mirror images in the plane of incidence.
-                for (std::size_t j = 0; j < points.count() / (isotropic_ ? 2 : 1); ++j) {
-                    addNode(points.direction(j), wo, isotropic_);
-                    weights.push_back(points.weight(j) * points.direction(j).z);
-                }
+        RingPoints points(grid);
+        while (points.next()) {
+            if (points.direction(0).z < lowest_) continue;
+            // The other half of the ring are mirror images in the plane of incidence.
+            for (std::size_t j = 0; j < points.count() / (isotropic_ ? 2 : 1); ++j) {
+                addNode(points.direction(j), wo, isotropic_);
+                weights.push_back(points.weight(j) * points.direction(j).z);
             }
         }
         // A node of its own for each pixel and parallel light.

@@ -138,17 +138,12 @@ TEST(Limits, QuadratureLevelsReachTheirStatedAccuracy) {
                         gridFor(brdf->lobes(wo), wo,
                                 {.order = 1, .level = level + later, .squeezed = squeezed});
                     double albedo = 0;
-                    RingPoints points;
-                    for (const auto& panel : grid.panels) {
-                        points.start(panel);
-                        for (std::size_t r = 0; r < panel.rings; ++r) {
-                            const std::size_t ring = panel.firstRing + r;
-                            points.move(grid, ring);
-                            std::vector<double> f(points.count());
-                            brdf->eval(wo, points.directions(), f.data());
-                            for (std::size_t j = 0; j < f.size(); ++j)
-                                albedo += points.weight(j) * grid.elevations[ring].mu * f[j];
-                        }
+                    RingPoints points(grid);
+                    while (points.next()) {
+                        std::vector<double> f(points.count());
+                        brdf->eval(wo, points.directions(), f.data());
+                        for (std::size_t j = 0; j < f.size(); ++j)
+                            albedo += points.weight(j) * points.mu() * f[j];
                     }
                     EXPECT_NEAR(albedo / exact, 1, bound) << spec << " " << theta << " " << level;
                 }

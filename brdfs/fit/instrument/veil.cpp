@@ -26,15 +26,11 @@ struct Nodes {
 Nodes nodesAt(const Brdf& brdf, const Direction& wi, int level) {
     Nodes nodes;
     const HemisphereGrid grid = gridFor(brdf.lobes(wi), wi, {.level = level, .squeezed = true});
-    RingPoints points;
-    for (const auto& panel : grid.panels) {
-        points.start(panel);
-        for (std::size_t ring = panel.firstRing; ring < panel.firstRing + panel.rings; ++ring) {
-            points.move(grid, ring);
-            for (std::size_t j = 0; j < points.count(); ++j) {
-                nodes.wo.push_back(points.direction(j));
-                nodes.factors.push_back(points.weight(j) * nodes.wo.back().z / pi);
-            }
+    RingPoints points(grid);
+    while (points.next()) {
+        for (std::size_t j = 0; j < points.count(); ++j) {
+            nodes.wo.push_back(points.direction(j));
+            nodes.factors.push_back(points.weight(j) * nodes.wo.back().z / pi);
         }
     }
     // A constant f keeps its value.

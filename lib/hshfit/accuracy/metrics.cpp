@@ -195,22 +195,18 @@ Sums sumOver(const PairEvaluator& pair, const Asked& asked, const Direction& wo,
     Sums sums;
     std::vector<double> f, g;
     std::vector<double> albedo(pair.channels, 0.0);
-    RingPoints points;
-    for (const auto& panel : grid.panels) {
-        points.start(panel);
-        for (std::size_t ring = panel.firstRing; ring < panel.firstRing + panel.rings; ++ring) {
-            points.move(grid, ring);
-            const double mu = grid.elevations[ring].mu;
-            pair.eval(wo, points.directions(), f, g);
-            for (std::size_t k = 0; k < f.size(); ++k) {
-                const std::size_t j = k % points.count();
-                const double weight = points.weight(j);
-                asked.add({f[k], g[k], mu}, weight, sums);
-                albedo[k / points.count()] += weight * mu * (g[k] - f[k]);
-                if (const double error = std::abs(g[k] - f[k]) * mu; error > sums.maximum) {
-                    sums.maximum = error;
-                    sums.maximumWi = points.direction(j);
-                }
+    RingPoints points(grid);
+    while (points.next()) {
+        const double mu = points.mu();
+        pair.eval(wo, points.directions(), f, g);
+        for (std::size_t k = 0; k < f.size(); ++k) {
+            const std::size_t j = k % points.count();
+            const double weight = points.weight(j);
+            asked.add({f[k], g[k], mu}, weight, sums);
+            albedo[k / points.count()] += weight * mu * (g[k] - f[k]);
+            if (const double error = std::abs(g[k] - f[k]) * mu; error > sums.maximum) {
+                sums.maximum = error;
+                sums.maximumWi = points.direction(j);
             }
         }
     }

@@ -19,18 +19,14 @@ constexpr double settled = 2e-4;  // of the albedo; tables are interpolated with
 LobeNodes nodesAt(const Brdf& brdf, const Direction& wo, const HemisphereGrid& grid) {
     LobeNodes nodes;
     nodes.wo = wo;
-    RingPoints points;
-    for (const HemisphereGrid::Panel& panel : grid.panels) {
-        points.start(panel);
-        for (std::size_t r = panel.firstRing; r < panel.firstRing + panel.rings; ++r) {
-            points.move(grid, r);
-            for (std::size_t j = 0; j < points.count(); ++j) {
-                const Direction d = points.direction(j);
-                nodes.x.push_back(d.x);
-                nodes.y.push_back(d.y);
-                nodes.z.push_back(d.z);
-                nodes.weights.push_back(points.weight(j));
-            }
+    RingPoints points(grid);
+    while (points.next()) {
+        for (std::size_t j = 0; j < points.count(); ++j) {
+            const Direction d = points.direction(j);
+            nodes.x.push_back(d.x);
+            nodes.y.push_back(d.y);
+            nodes.z.push_back(d.z);
+            nodes.weights.push_back(points.weight(j));
         }
     }
     const std::size_t count = nodes.count(), channels = brdf.channels().count();

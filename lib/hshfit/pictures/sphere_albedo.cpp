@@ -60,21 +60,16 @@ Albedo albedoAt(const Brdf& brdf, const Direction& wo, int gridLevel) {
     const HemisphereGrid grid = gridAt(brdf, wo, gridLevel);
     Albedo albedo{std::vector<double>(brdf.channels().count(), 0.0), 0};
     std::vector<double> f;
-    RingPoints points;
-    for (const auto& panel : grid.panels) {
-        points.start(panel);
-        for (std::size_t ring = panel.firstRing; ring < panel.firstRing + panel.rings; ++ring) {
-            points.move(grid, ring);
-            const std::size_t count = points.count();
-            f.resize(count * albedo.values.size());
-            brdf.eval(wo, points.directions(), f.data());
-            for (std::size_t k = 0; k < f.size(); ++k) {
-                if (std::isfinite(f[k])) {
-                    albedo.values[k / count] +=
-                        points.weight(k % count) * grid.elevations[ring].mu * f[k];
-                } else {
-                    ++albedo.notFinite;
-                }
+    RingPoints points(grid);
+    while (points.next()) {
+        const std::size_t count = points.count();
+        f.resize(count * albedo.values.size());
+        brdf.eval(wo, points.directions(), f.data());
+        for (std::size_t k = 0; k < f.size(); ++k) {
+            if (std::isfinite(f[k])) {
+                albedo.values[k / count] += points.weight(k % count) * points.mu() * f[k];
+            } else {
+                ++albedo.notFinite;
             }
         }
     }

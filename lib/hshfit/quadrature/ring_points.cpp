@@ -2,8 +2,6 @@
 
 #include <hshfit/quadrature/azimuth_tables.h>
 
-#include <algorithm>
-
 namespace hshfit::inline quadrature {
 namespace {
 
@@ -19,7 +17,8 @@ void cutNodes(const CutRing& ring, std::vector<double>& t, std::vector<double>& 
 
 }  // namespace
 
-void RingPoints::start(const HemisphereGrid::Panel& panel) {
+/// Azimuths that all rings of a panel share.
+void RingPoints::takeEqual(const HemisphereGrid::Panel& panel) {
     const std::size_t azimuths = panel.azimuths.spacing.azimuths;
     const double step = 2 * pi / static_cast<double>(azimuths);
     std::vector<double> t(azimuths), weights(azimuths, step);
@@ -40,22 +39,28 @@ void RingPoints::take(const HemisphereGrid::Panel& panel, const std::vector<doub
     }
 }
 
-void RingPoints::move(const HemisphereGrid& grid, std::size_t ring) {
-    const auto after =
-        std::ranges::upper_bound(grid.panels, ring, {}, &HemisphereGrid::Panel::firstRing);
-    const HemisphereGrid::Panel& panel = *std::prev(after);
+bool RingPoints::next() {
+    while (panel_ < grid_.panels.size() &&
+           next_ >= grid_.panels[panel_].firstRing + grid_.panels[panel_].rings)
+        ++panel_;
+    if (panel_ == grid_.panels.size()) return false;
+    const HemisphereGrid::Panel& panel = grid_.panels[panel_];
+    const std::size_t ring = next_++;
     if (!panel.cuts.empty()) {
         std::vector<double> t, weights;
         cutNodes(panel.cuts[ring - panel.firstRing], t, weights);
         take(panel, t, weights);
+    } else if (ring == panel.firstRing) {
+        takeEqual(panel);
     }
-    const double sine = grid.sines[ring], height = grid.elevations[ring].mu;
+    const double sine = grid_.sines[ring], height = mu();
     for (std::size_t j = 0; j < count(); ++j) {
         x_[j] = sine * cosine_[j];
         y_[j] = sine * sine_[j];
         z_[j] = height;
-        weights_[j] = grid.weights[ring] * step_[j];
+        weights_[j] = grid_.weights[ring] * step_[j];
     }
+    return true;
 }
 
 }  // namespace hshfit::inline quadrature

@@ -1,10 +1,10 @@
 #include <hshfit/rendering/direct_integral.h>
 
-#include <hshfit/brdf/kink_curve.h>
 #include <hshfit/brdf/vectors.h>
-#include <hshfit/quadrature/ring_points.h>
+#include <hshfit/rendering/internal/even_light.h>
 #include <hshfit/rendering/internal/light_cells.h>
 #include <hshfit/rendering/internal/panel_cells.h>
+#include <hshfit/rendering/internal/smooth_light_nodes.h>
 
 #include <algorithm>
 #include <cmath>
@@ -266,54 +266,13 @@ double extentOf(const Light& light) {
 
 constexpr int mostLevel = 12;
 
-/// Nodes for a disc of light, or for even light from all around: rings that follow the lobes of f,
-/// however narrow, and end at the disc's edge.
-class DiscNodes {
-public:
-    DiscNodes(const DiscLight& light, const Frame& frame, const Brdf& brdf, const Direction& wo)
-        : radiance_(light.radiance),
-          axis_(frame.toLocal(light.towards)),
-          least_(light.radius < pi ? std::cos(light.radius) : -2),
-          wo_(wo),
-          lobes_(brdf.lobes(wo)),
-          kinks_(brdf.kinks(wo)),
-          curves_(kinkCurvesOf(brdf, wo)) {
-        if (light.radius < pi) curves_.push_back(circleAbout(axis_, least_));
-    }
-
-    void add(int level, Evaluator& evaluator) const {
-        const HemisphereGrid grid =
-            gridFor(lobes_, wo_, {.order = 1, .level = level, .squeezed = true}, kinks_, curves_);
-        RingPoints points;
-        for (const auto& panel : grid.panels) {
-            points.start(panel);
-            for (std::size_t ring = panel.firstRing; ring < panel.firstRing + panel.rings; ++ring) {
-                points.move(grid, ring);
-                for (std::size_t j = 0; j < points.count(); ++j) {
-                    if (dot(points.direction(j), axis_) < least_) continue;
-                    Rgb flux = radiance_;
-                    for (double& value : flux) value *= points.weight(j);
-                    evaluator.add(points.direction(j), flux);
-                }
-            }
-        }
-    }
-
-private:
-    Rgb radiance_;
-    Direction axis_;
-    double least_;
-    Direction wo_;
-    std::vector<Lobe> lobes_;
-    std::vector<double> kinks_;
-    std::vector<KinkCurve> curves_;
-};
-
 /// Share of a picture's flux times width, in radians, of its coarse cells, over the tolerance.
 constexpr double finestPerTolerance = 0.1;
 
 /// DirectIntegral::finest of a light.
 double finestOf(const Light& light) {
+    if (const auto* series = std::get_if<CoefficientLight>(&light))
+        return pi / 2 / series->coefficients->order;
     const auto* sky = std::get_if<SkyLight>(&light);
     if (!sky || sky->model == SkyLight::Model::hosekWilkie) return 0;
     double finest = 1;
@@ -339,8 +298,15 @@ int firstLevel(const Light& light, const Frame& frame, std::span<const Peak> pea
                                 static_cast<int>(std::ceil(std::log(more) / std::log(1.5))));
 }
 
-/// The first level at which nodes that follow a disc are more than nodes that follow lobes.
-constexpr int fineLevel = 5;
+/// The first level at which nodes that follow a light are more than nodes that follow lobes.
+constexpr int fineLevel = 2;
+
+/// Whether nodes for a light that would start at this level follow the lobes of f instead.
+bool followsLobes(const Light& light, int level) {
+    const bool smooth =
+        std::holds_alternative<DiscLight>(light) || std::holds_alternative<CoefficientLight>(light);
+    return evenRadianceOf(light).has_value() || (smooth && level >= fineLevel);
+}
 
 }  // namespace
 
@@ -371,8 +337,16 @@ double DirectIntegral::finest() const {
     return parts_->finest;
 }
 
+Rgb DirectIntegral::evenRadiance() const {
+    Rgb sum{};
+    for (const Light& light : parts_->compact)
+        if (const auto radiance = evenRadianceOf(light)) add(sum, *radiance);
+    return sum;
+}
+
 PointRadiance DirectIntegral::at(const Brdf& brdf, const Frame& frame, const Direction& wo,
-                                 const IntegrationOptions& options) const {
+                                 const IntegrationOptions& options,
+                                 const std::optional<PointRadiance>& underEven) const {
     PointRadiance result;
     SignedSum total;
     CellIntegral<LightCells, LightCell>(parts_->cells, brdf, frame, wo, options, total, result)
@@ -382,22 +356,21 @@ PointRadiance DirectIntegral::at(const Brdf& brdf, const Frame& frame, const Dir
     Evaluator evaluator(brdf, wo, result);
     const std::vector<Peak> peaks =
         parts_->compact.empty() ? std::vector<Peak>{} : peaksOf(brdf, wo);
+    if (underEven) {
+        for (std::size_t c = 0; c < 3; ++c) total.value[c] += underEven->radiance[c];
+        result.error += underEven->error;
+    }
     for (const Light& light : parts_->compact) {
+        if (underEven && evenRadianceOf(light)) continue;
         int level = firstLevel(light, frame, peaks);
-        std::optional<DiscNodes> nodes;
-        if (const auto* disc = std::get_if<DiscLight>(&light);
-            disc && (level >= fineLevel || disc->radius >= pi)) {
-            nodes.emplace(*disc, frame, brdf, wo);
-            level = 0;
+        std::optional<SmoothLightNodes> nodes;
+        if (followsLobes(light, level)) {
+            nodes.emplace(light, frame, brdf, wo);
+            level = nodes->firstLevel(options.tolerance);
         }
         const auto sumAt = [&](int at) {
-            if (nodes) {
-                evaluator.clear();
-                nodes->add(at, evaluator);
-                evaluator.evaluate();
-                return evaluator.sum(0, evaluator.count());
-            }
-            const LightSamples samples = sampleLights({&light, 1}, frame, at);
+            const LightSamples samples =
+                nodes ? nodes->samples(at) : sampleLights({&light, 1}, frame, at);
             evaluator.clear();
             for (std::size_t k = 0; k < samples.count(); ++k) {
                 evaluator.add({samples.x[k], samples.y[k], samples.z[k]},

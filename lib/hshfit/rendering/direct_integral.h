@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -43,12 +44,17 @@ public:
     DirectIntegral(const DirectIntegral&) = delete;
     DirectIntegral& operator=(const DirectIntegral&) = delete;
 
-    /// `wo` in the frame, above its horizon.
+    /// `wo` in the frame, above its horizon. `underEven`: the part from even light, if it is known.
     PointRadiance at(const Brdf& brdf, const Frame& frame, const Direction& wo,
-                     const IntegrationOptions& options = {}) const;
+                     const IntegrationOptions& options = {},
+                     const std::optional<PointRadiance>& underEven = {}) const;
+
+    /// Radiance of all lights that shine alike from all around.
+    Rgb evenRadiance() const;
 
     /// The angle in radians over which the light, but for its edges, falls to 1/e at the most. It
-    /// is known of skies whose brightness about the sun is an exponential; 0 with any other light.
+    /// is known of skies whose brightness about the sun is an exponential, and about a quarter of
+    /// the shortest wave of a series of coefficients; 0 with any other light.
     double finest() const;
 
 private:

@@ -112,9 +112,8 @@ TEST(Rings, HalfOfAnEvenRingGivesTheSameTransform) {
 TEST(Rings, PointsAreThoseOfTheTransform) {
     const PoissonBrdf brdf(1e-2, 2.0);
     const HemisphereGrid grid = oneRing({256, 3}, 2.0);
-    RingPoints points;
-    points.start(grid.panels[0]);
-    points.move(grid, 0);
+    RingPoints points(grid);
+    ASSERT_TRUE(points.next());
     double area = 0, integral = 0, side = 0;
     std::vector<double> f(points.count());
     brdf.eval({0, 0, 1}, points.directions(), f.data());
@@ -130,6 +129,7 @@ TEST(Rings, PointsAreThoseOfTheTransform) {
     EXPECT_NEAR(area, 2 * pi, 1e-12);
     EXPECT_NEAR(side, pi, 1e-12);
     EXPECT_NEAR(integral, 2 * pi, 1e-6);
+    EXPECT_FALSE(points.next());
 }
 
 /// More tables than there is room for: those that are not kept are the same.

@@ -1,5 +1,6 @@
 // Direct integration of functions that are below 0 at places.
 
+#include <hshfit/light/coefficient_light.h>
 #include <hshfit/rendering/direct_integral.h>
 #include <hshfit/rendering/view.h>
 
@@ -54,6 +55,42 @@ TEST(DirectIntegral, NarrowLobesReflectEvenLightWithoutLoss) {
                 mirror, frameAt({0.6, 0, 0.8}), directionFromAngles(radians(degree), 0.4), options);
             EXPECT_FALSE(found.cut);
             EXPECT_NEAR(found.radiance[0], 1, options.tolerance) << width << " " << degree;
+        }
+    }
+}
+
+/// Light of coefficients from the closed forms of their first functions: 2 + x over the sphere, and
+/// 1 over the hemisphere about +x, which ends where the mirror direction leaves it.
+TEST(DirectIntegral, NarrowLobesReflectSeriesOfCoefficients) {
+    LightCoefficients sphere{.basis = "sh", .order = 2};
+    sphere.domain = LightCoefficients::Domain::sphere;
+    sphere.values.assign(12, 0.0);
+    LightCoefficients half{.basis = "hsh", .order = 1};
+    half.domain = LightCoefficients::Domain::hemisphere;
+    half.normalTheta = pi / 2;
+    half.values.assign(3, std::sqrt(2 * pi));
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+        sphere.at(channel)[0] = 2 * std::sqrt(4 * pi);
+        sphere.at(channel)[3] = std::sqrt(4 * pi / 3);  // slot of m = 1: x
+    }
+    const std::vector<Light> linear = {coefficientLight(sphere, "sphere.json")},
+                             step = {coefficientLight(half, "half.json")};
+    const Frame frame = frameAt({0.6, 0, 0.8});
+    const IntegrationOptions options;
+    for (const double width : {1e-2, 1e-3, 1e-4}) {
+        const test::BlurredMirror mirror(width);
+        for (const double degree : {0.0, 12.0, 33.0, 50.0, 75.0}) {
+            const Direction wo = directionFromAngles(radians(degree), 0.4);
+            const double x = frame.toWorld(mirrored(wo)).x;
+            const auto radianceBy = [&](const std::vector<Light>& lights) {
+                const PointRadiance found = DirectIntegral(lights).at(mirror, frame, wo, options);
+                EXPECT_FALSE(found.cut);
+                return found.radiance[1];
+            };
+            EXPECT_NEAR(radianceBy(linear), 2 + x, 2 * options.tolerance) << width << " " << degree;
+            ASSERT_GT(std::abs(x), 5 * width);
+            EXPECT_NEAR(radianceBy(step), x > 0 ? 1 : 0, options.tolerance)
+                << width << " " << degree;
         }
     }
 }

@@ -1,6 +1,7 @@
 #include <hshfit/rendering/internal/light_cells.h>
 
 #include <hshfit/light/light_samples.h>
+#include <hshfit/rendering/internal/even_light.h>
 
 #include <tbb/parallel_for.h>
 
@@ -41,14 +42,15 @@ Light skyPicture(std::span<const Light> lights) {
 }
 
 std::vector<Light> withOneSky(std::span<const Light> lights) {
-    std::vector<Light> skies, uniform, result;
+    std::vector<Light> skies, even, result;
     for (const Light& light : lights) {
-        const auto* disc = std::get_if<DiscLight>(&light);
-        const bool all = disc && disc->radius >= pi;
-        (std::holds_alternative<SkyLight>(light) ? skies : all ? uniform : result).push_back(light);
+        if (const auto radiance = evenRadianceOf(light))
+            even.push_back(DiscLight{{0, 0, 1}, pi, *radiance});
+        else
+            (std::holds_alternative<SkyLight>(light) ? skies : result).push_back(light);
     }
     std::vector<Light>& to = skies.empty() ? result : skies;
-    to.insert(to.end(), uniform.begin(), uniform.end());
+    to.insert(to.end(), even.begin(), even.end());
     if (!skies.empty()) result.push_back(skyPicture(skies));
     return result;
 }

@@ -11,6 +11,8 @@ namespace hshfit::inline rendering {
 
 /// Radiance below this share of the mean has the errors of that share.
 inline constexpr double darkest = 0.05;
+/// Share of the tolerance that interpolation in the middle of a cell may take.
+inline constexpr double interpolationShare = 0.125;
 
 /// A point of a surface in the frame of its lit side.
 struct LitPoint {

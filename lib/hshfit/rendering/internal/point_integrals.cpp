@@ -19,8 +19,6 @@ constexpr double notReached = std::numeric_limits<double>::infinity();
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 /// The tolerance of the first pass of a picture with an end of the time: wider ones take as long.
 constexpr double coarsest = 0.5;
-/// Share of the tolerance that interpolation in the middle of a cell may take.
-constexpr double interpolationShare = 0.125;
 /// Points for each integral of a grid, at least.
 constexpr std::size_t leastShared = 4;
 /// Cells along the edge of a cube, at least: 7.5 degrees.
@@ -53,6 +51,7 @@ std::size_t PointIntegrals::early() const {
 
 void PointIntegrals::run(const RenderProgress& progress) {
     Steps steps(progress, blocksOf(points_));
+    takeEvenLight([] { return true; });
     interpolate(options_.tolerance, steps, [] { return true; });
     pass(options_.tolerance, steps, [](std::size_t) { return true; });
 }
@@ -65,12 +64,19 @@ void PointIntegrals::runUntil(const TimeLimit& limit, const RenderProgress& prog
     }
     const auto inTime = [&] { return !limit.isOver(); };
     Steps steps(progress, 3 * blocksOf(points_));
+    takeEvenLight(inTime);
     interpolate(coarse, steps, [] { return true; });
     pass(coarse, steps, [&](std::size_t k) { return first[k] != 0; });
     pass(coarse, steps, [&](std::size_t) { return inTime(); });
     interpolate(options_.tolerance, steps, inTime);
     pass(options_.tolerance, steps, [&](std::size_t) { return inTime(); });
     fillPixels();
+}
+
+void PointIntegrals::takeEvenLight(const GoesOn& goesOn) {
+    if (absoluteSum(light_.evenRadiance()) > 0)
+        evaluations_ +=
+            even_.emplace(brdf_, options_, points_.count() / leastShared, goesOn).evaluations();
 }
 
 void PointIntegrals::pass(double tolerance, Steps& steps,
@@ -86,7 +92,14 @@ PointRadiance PointIntegrals::integral(const Direction& normal, const Direction&
     const LitPoint at = litPoint(normal, viewer, through_);
     IntegrationOptions how = options_;
     how.tolerance = tolerance;
-    return light_.at(brdf_, at.frame, at.wo, how);
+    std::optional<PointRadiance> underEven;
+    if (const auto one = even_ ? even_->at(at.wo) : std::nullopt) {
+        const Rgb even = light_.evenRadiance();
+        underEven.emplace();
+        for (std::size_t c = 0; c < 3; ++c) underEven->radiance[c] = even[c] * one->radiance[c];
+        underEven->error = one->error * std::max({even[0], even[1], even[2]});
+    }
+    return light_.at(brdf_, at.frame, at.wo, how, underEven);
 }
 
 void PointIntegrals::integrate(std::size_t k, double tolerance) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <hshfit/rendering/direct_integral.h>
+#include <hshfit/rendering/internal/even_light.h>
 #include <hshfit/rendering/internal/lit_points.h>
 #include <hshfit/rendering/internal/normal_table.h>
 #include <hshfit/rendering/view.h>
@@ -9,6 +10,7 @@
 #include <atomic>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <vector>
 
 namespace hshfit::inline rendering {
@@ -20,6 +22,8 @@ namespace hshfit::inline rendering {
 /// the step follow each other for the points of cells in whose middle, or in a middle beside it,
 /// interpolation is off by more than an eighth of the tolerance. The last points, for which the
 /// next grid would take more than a quarter of their own integrals, are integrated by themselves.
+/// The part from even light, which depends on the viewer in the frame of the surface alone, is
+/// interpolated before all that (even_light.h).
 class PointIntegrals {
 public:
     PointIntegrals(const Brdf& brdf, const SurfacePoints& points, const View& view,
@@ -36,6 +40,7 @@ public:
 private:
     using GoesOn = std::function<bool()>;
 
+    void takeEvenLight(const GoesOn& goesOn);
     void pass(double tolerance, Steps& steps, const std::function<bool(std::size_t)>& wanted);
     PointRadiance integral(const Direction& normal, const Direction& viewer,
                            double tolerance) const;
@@ -55,6 +60,7 @@ private:
     const DirectIntegral& light_;
     const IntegrationOptions& options_;
     const bool through_;
+    std::optional<EvenLight> even_;
     std::vector<PointRadiance> facts_;
     std::vector<double> kept_;  ///< the tolerance by point
     std::atomic<std::size_t> evaluations_ = 0;

@@ -42,17 +42,12 @@ void addRings(const Brdf& brdf, Target& target) {
     const Direction& wo = target.wo;
     const HemisphereGrid grid =
         gridFor(brdf.lobes(wo), wo, {.order = 1, .level = 0, .squeezed = true}, brdf.kinks(wo));
-    RingPoints points;
+    RingPoints points(grid);
     std::vector<double> solidAngles;
-    for (const HemisphereGrid::Panel& panel : grid.panels) {
-        points.start(panel);
-        for (std::size_t r = panel.firstRing; r < panel.firstRing + panel.rings; ++r) {
-            points.move(grid, r);
-            solidAngles.clear();
-            for (std::size_t j = 0; j < points.count(); ++j)
-                solidAngles.push_back(points.weight(j));
-            addNodes(brdf, points.directions(), solidAngles, target);
-        }
+    while (points.next()) {
+        solidAngles.clear();
+        for (std::size_t j = 0; j < points.count(); ++j) solidAngles.push_back(points.weight(j));
+        addNodes(brdf, points.directions(), solidAngles, target);
     }
 }
 
