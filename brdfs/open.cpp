@@ -167,6 +167,8 @@ std::unique_ptr<Brdf> openTerm(std::string_view spec) {
         return openFile(std::string(path), options.substr(options.empty() ? 0 : 1));
     }
     const std::string_view path = spec.substr(0, spec.rfind(':'));
+    if (namesPreset(path))
+        throw UsageError(fmt::format("{0}: no such file or model; did you mean preset:{0}?", path));
     if (looksLikePath(path)) throw InputError(fmt::format("{}: no such file", path));
     refuseModel(spec.substr(0, spec.find(':')));
 }

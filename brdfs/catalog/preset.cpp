@@ -138,4 +138,9 @@ std::unique_ptr<Brdf> openNamedPreset(std::string_view name) {
                                  suggestion(collection, known), joined(known)));
 }
 
+bool namesPreset(std::string_view name) {
+    return std::ranges::find(presets(), name, &Preset::name) != presets().end() ||
+           findPresetCollection(name.substr(0, name.find('/')));
+}
+
 }  // namespace hshfit::brdfs

@@ -53,4 +53,8 @@ std::unique_ptr<Brdf> openMaterial(std::string_view collection, const std::strin
 /// unknown name (naming the nearest).
 std::unique_ptr<Brdf> openNamedPreset(std::string_view name);
 
+/// Whether `name` is a row of the table, or begins with a collection: a specification that lacks
+/// its "preset:".
+bool namesPreset(std::string_view name);
+
 }  // namespace hshfit::brdfs

@@ -171,10 +171,16 @@ void remark(const RenderedPicture& picture, std::size_t points, const Listener& 
     }
 }
 
+bool holdsCoefficients(const std::string& spec, const Brdf& brdf) {
+    return looksLikeCoefficients(spec) || dynamic_cast<const Reconstruction*>(&brdf) != nullptr ||
+           dynamic_cast<const RepresentedBrdf*>(&brdf) != nullptr;
+}
+
 /// Tells the listener that integration of a file of coefficients is of their own sum.
 void remarkOwnSum(const Material& material, const RenderOptions& options,
                   const Listener& listener) {
-    if (options.by != RenderOptions::By::both || material.name == material.brdf->name()) return;
+    if (options.by != RenderOptions::By::both || !holdsCoefficients(material.name, *material.brdf))
+        return;
     listener.say(
         fmt::format("{0}: both pictures show the sum of its coefficients, the second one projected "
                     "again; to see what it loses of {1}, render {1} {0}",
@@ -381,10 +387,7 @@ private:
 }  // namespace
 
 std::string shownName(const std::string& spec, const Brdf& brdf) {
-    const bool holdsCoefficients = looksLikeCoefficients(spec) ||
-                                   dynamic_cast<const Reconstruction*>(&brdf) != nullptr ||
-                                   dynamic_cast<const RepresentedBrdf*>(&brdf) != nullptr;
-    return holdsCoefficients ? spec : brdf.name();
+    return holdsCoefficients(spec, brdf) || spec.starts_with("preset:") ? spec : brdf.name();
 }
 
 std::string kindName(RenderedPicture::Kind kind) {

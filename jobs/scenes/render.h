@@ -50,8 +50,9 @@ struct RenderOptions {
     }
 };
 
-/// The name of a material beside its picture: the path of a file of coefficients, which calls
-/// itself by the BRDF that it was made from.
+/// The name of a material beside its picture: as it was given for a preset, whose own name is all
+/// of its parameters, and for a file of coefficients, which calls itself by the BRDF that it was
+/// made from.
 std::string shownName(const std::string& spec, const Brdf& brdf);
 
 /// One square of the sheet.

@@ -112,6 +112,17 @@ TEST(Collections, NameOpensTheSameBrdf) {
     }
 }
 
+/// Published numbers times factors of three digits: .0589 * 1.15 is 0.067735.
+TEST(Collections, NamesHaveNoDigitsOfRounding) {
+    for (const std::string& name : allNames()) {
+        std::size_t digits = 0;
+        for (const char c : open("preset:" + name)->name()) {
+            digits = c >= '0' && c <= '9' ? digits + 1 : c == '.' ? digits : 0;
+            ASSERT_LT(digits, 16u) << name << ": " << open("preset:" + name)->name();
+        }
+    }
+}
+
 TEST(Collections, AreParsedOnceByAnyThread) {
     std::vector<const PresetCollection*> seen(8);
     std::vector<std::thread> threads;
@@ -267,6 +278,9 @@ TEST(Collections, WrongNamesAreAnsweredWithTheNearest) {
     expectError<UsageError>(opening("preset:ngan-wrd/blue-acrylic"),
                             {"unknown preset", "did you mean 'ngan-ward'", "bagher-sgd"});
     expectError<UsageError>(opening("preset:/blue-acrylic"), {"unknown preset"});
+    expectError<UsageError>(opening("ngan-ward/blue-acrylic"),
+                            {"did you mean preset:ngan-ward/blue-acrylic?"});
+    expectError<UsageError>(opening("hsh-phong"), {"did you mean preset:hsh-phong?"});
 }
 
 TEST(Nearest, SubstringsThenWordsThenEdits) {
