@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <mutex>
 
 namespace hshfit::embedded {
@@ -43,19 +42,13 @@ ChannelScale parseScale(const JsonFields& collection) {
     return scale;
 }
 
-/// A product of two numbers of few digits, without the digits that rounding leaves behind them:
-/// 0.067735 and not 0.06773499999999999.
-double shortProduct(double a, double b) {
-    return std::strtod(fmt::format("{:.15g}", a * b).c_str(), nullptr);
-}
-
 /// A number or three of them, times the factors.
 Json scaled(const Json& value, const ChannelScale& scale) {
     Json product = Json::array();
     for (std::size_t c = 0; c < 3; ++c) {
         const Json& factor = value.is_array() && value.size() == 3 ? value[c] : value;
         if (!factor.is_number()) return value;  // the check of values reports it
-        product.push_back(shortProduct(factor.get<double>(), scale.factors[c]));
+        product.push_back(factor.get<double>() * scale.factors[c]);
     }
     return product;
 }

@@ -262,8 +262,7 @@ public:
             materials_.push_back({.brdf = openSource(spec, /*rgb=*/true, Sides::either)});
             materials_.back().name = shownName(spec, *materials_.back().brdf);
             remarkOwnSum(materials_.back(), options_, listener_);
-            const std::string poor = poorContents(*materials_.back().brdf);
-            if (!poor.empty()) listener_.say(materials_.back().name + ": " + poor);
+            remarkContents(materials_.back().name, *materials_.back().brdf, listener_);
             const Brdf &first = *materials_.front().brdf, &last = *materials_.back().brdf;
             if (transmits(first) != transmits(last))
                 throw UsageError(
@@ -388,6 +387,11 @@ private:
 
 std::string shownName(const std::string& spec, const Brdf& brdf) {
     return holdsCoefficients(spec, brdf) || spec.starts_with("preset:") ? spec : brdf.name();
+}
+
+void remarkContents(const std::string& name, const Brdf& brdf, const Listener& listener) {
+    for (const std::string& remark : {poorContents(brdf), unmeasuredContents(brdf)})
+        if (!remark.empty()) listener.say(name + ": " + remark);
 }
 
 std::string kindName(RenderedPicture::Kind kind) {

@@ -54,6 +54,8 @@ struct RenderOptions {
 /// of its parameters, and for a file of coefficients, which calls itself by the BRDF that it was
 /// made from.
 std::string shownName(const std::string& spec, const Brdf& brdf);
+/// Tells the listener why a picture of what was opened is poor, or black at places.
+void remarkContents(const std::string& name, const Brdf& brdf, const Listener& listener);
 
 /// One square of the sheet.
 struct RenderedPicture {

@@ -3,7 +3,6 @@
 #include "render.h"
 
 #include <jobs/common/inputs.h>
-#include <jobs/source/quality.h>
 #include <jobs/source/source.h>
 
 #include <hshfit/brdf/transmission.h>
@@ -30,8 +29,7 @@ SphereSheet render(const std::vector<std::string>& sources, const std::string& o
                             "dark; expected a sky or a picture as light",
                             brdf->name()));
         const std::string name = shownName(source, *brdf);
-        const std::string poor = poorContents(*brdf);
-        if (!poor.empty()) listener.say(name + ": " + poor);
+        remarkContents(name, *brdf, listener);
         const SpherePicture& picture =
             pictures.emplace_back(renderSphere(*brdf, {.rig = options.rig,
                                                        .size = options.size,

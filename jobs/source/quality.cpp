@@ -268,6 +268,44 @@ std::string poorContents(const Brdf& opened) {
         percent(*share), plain->coefficients().source);
 }
 
+std::string unmeasuredContents(const Brdf& opened) {
+    constexpr std::size_t viewers = 24, directions = 96;
+    constexpr double least = 0.05;
+    // Even in (x, y), by a spiral of the golden angle: as cos(theta) d omega, and as the normals of
+    // a sphere in its picture.
+    const auto spiral = [](std::size_t k, std::size_t count) {
+        const double golden = pi * (3 - std::sqrt(5.0));
+        const double sine = std::sqrt((static_cast<double>(k) + 0.5) / static_cast<double>(count));
+        return directionFromAngles(std::asin(sine), golden * static_cast<double>(k));
+    };
+    std::vector<double> x, y, z;
+    for (std::size_t k = 0; k < directions; ++k) {
+        const Direction wi = spiral(k, directions);
+        x.push_back(wi.x), y.push_back(wi.y), z.push_back(wi.z);
+    }
+    const DirectionBatch wi{x.data(), y.data(), z.data(), directions};
+    const std::size_t channels = opened.channels().count();
+    std::vector<double> f(channels * directions);
+    std::vector<unsigned char> covered(directions);
+    std::size_t absent = 0;
+    for (std::size_t v = 0; v < viewers; ++v) {
+        const Direction wo = spiral(v, viewers);
+        opened.eval(wo, wi, f.data());
+        opened.coverage(wo, wi, covered.data());
+        for (std::size_t k = 0; k < directions; ++k) {
+            bool black = covered[k] == 0;
+            for (std::size_t c = 0; c < channels; ++c) black &= f[c * directions + k] == 0;
+            absent += black ? 1 : 0;
+        }
+    }
+    const double share = static_cast<double>(absent) / (viewers * directions);
+    if (share < least) return {};
+    return fmt::format(
+        "{} of the pairs of directions that light a sphere were not measured, and are drawn black; "
+        "a fitted model continues there",
+        percent(share, 2));
+}
+
 std::optional<double> capturedShare(const Representation& kept, const Brdf& source,
                                     const std::optional<PairSummary>& pairs) {
     const CoefficientHead& head = kept.head;

@@ -48,6 +48,9 @@ std::optional<double> capturedShare(const Coefficients& coefficients);
 /// The reason why the coefficients of an opened file are poor, by the energy that they capture of
 /// their source; empty where they are not, and for other BRDFs.
 std::string poorContents(const Brdf& opened);
+/// The share of the light that a sphere under even light sends to a distant viewer for which there
+/// are no samples and f is 0, in a sentence; empty where it is less than a twentieth.
+std::string unmeasuredContents(const Brdf& opened);
 
 /// The function of whose energy capturedShare is a share: "f", "f cos(theta_i)" or
 /// "f cos(theta_i) cos(theta_o)".

@@ -112,17 +112,6 @@ TEST(Collections, NameOpensTheSameBrdf) {
     }
 }
 
-/// Published numbers times factors of three digits: .0589 * 1.15 is 0.067735.
-TEST(Collections, NamesHaveNoDigitsOfRounding) {
-    for (const std::string& name : allNames()) {
-        std::size_t digits = 0;
-        for (const char c : open("preset:" + name)->name()) {
-            digits = c >= '0' && c <= '9' ? digits + 1 : c == '.' ? digits : 0;
-            ASSERT_LT(digits, 16u) << name << ": " << open("preset:" + name)->name();
-        }
-    }
-}
-
 TEST(Collections, AreParsedOnceByAnyThread) {
     std::vector<const PresetCollection*> seen(8);
     std::vector<std::thread> threads;

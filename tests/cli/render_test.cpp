@@ -27,6 +27,31 @@ TEST_F(Cli, RenderHasHelpWhoseExampleWorks) {
     EXPECT_EQ(read(path("spheres.png")).substr(1, 3), "PNG");
 }
 
+/// Samples below 30 degrees: a sphere is black but for its middle.
+TEST_F(Cli, RenderSaysThatDirectionsWereNotMeasured) {
+    std::string samples = "theta_i,phi_i,theta_o,phi_o,f\n", everywhere = samples;
+    for (int i = 0; i <= 85; i += 5)
+        for (int o = 0; o <= 85; o += 5)
+            for (int phi = 0; phi < 360; phi += 30) {
+                const std::string line = std::to_string(i) + ",0," + std::to_string(o) + "," +
+                                         std::to_string(phi) + ",0.3\n";
+                everywhere += line;
+                if (i <= 30 && o <= 30) samples += line;
+            }
+    write("few.csv", samples);
+    write("all.csv", everywhere);
+    const std::string few = path("few.csv"), all = path("all.csv");
+    for (const std::string way : {"", " --by integration"}) {
+        const Answer answer = run("render " + few + " --size 8" + way + " -o " + path("few.exr"));
+        EXPECT_EQ(answer.code, 0) << answer.err;
+        EXPECT_NE(answer.err.find("were not measured, and are drawn black"), std::string::npos)
+            << way << answer.err;
+        fs::remove(path("few.exr"));
+        EXPECT_EQ(run("render " + all + " --size 8" + way + " -o " + path("all.exr")).err, "");
+        fs::remove(path("all.exr"));
+    }
+}
+
 TEST_F(Cli, RenderNamesTheSpheresInTheirOrder) {
     const Answer answer =
         run("render ggx:alpha=.3 lambert:kd=.2 --size 16 --light 30,90,2 --json "
