@@ -72,6 +72,9 @@ private='[Ww]hoever|for the sake of|[^t] says? so([ .,;]|$)|in whatever case|wit
     matches "(^|[.:;] |[*][*]|^[|] *|^[-*] )$openings|$private" '*.md'
     matches "(//[/<!]* |[.:;] )$openings|//[/<!]* $places|//.*($private)" '*.h' '*.cpp'
 } | rule 'sentences have a noun for a subject'
+subranges='unique|remove(_if)?|search(_n)?|(stable_)?partition|rotate|equal_range|find_end'
+matches "ranges::($subranges)\(" '*.h' '*.cpp' |
+    rule 'clang 14 does not compile the subranges of libstdc++ 12'
 matches '#include *[<"](brdfs|cli|jobs)/' lib | rule 'lib includes nothing from brdfs, jobs or cli'
 matches '"([^"]*[^-[:alnum:]"])?--[a-z]|"[^"]*hshfit [a-z]+ ' 'lib/*.cpp' 'lib/*.h' jobs \
     ':!jobs/*_options.*' ':!jobs/common/option_row.h' |

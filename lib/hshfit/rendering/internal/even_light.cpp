@@ -57,7 +57,7 @@ EvenLight::EvenLight(const Brdf& brdf, const IntegrationOptions& options, std::s
             for (std::uint32_t i = 0; i < 3; ++i)
                 for (std::uint32_t j = 0; j < 3; ++j) places.push_back(placeIn(cells_[k], i, j));
         std::ranges::sort(places);
-        places.erase(std::ranges::unique(places).begin(), places.end());
+        places.erase(std::unique(places.begin(), places.end()), places.end());
         std::erase_if(places, [&](const Place& place) { return integrals_.contains(place); });
         if (integrals_.size() + places.size() > most || !goesOn()) return;
         integrate(places, brdf, options, goesOn);
