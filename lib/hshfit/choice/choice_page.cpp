@@ -58,7 +58,7 @@ data rowData(const Choice& choice, std::size_t k, const std::vector<SpherePictur
     if (row.poor) entry.set("poor", *row.poor);
     if (!row.unfit.empty()) entry.set("unfit", row.unfit);
     const std::string command = commandLineOf(row);
-    if (!command.empty()) entry.set("command", command);
+    if (!command.empty()) entry.set("command", commandMarkup(command));
     entry.set("spec", withoutFolders(row.made.spec));
     entry.set("strips", strips(spheres, row.made.brdf ? stripSpheres(*row.made.brdf) : spheres));
     return entry;

@@ -7,6 +7,7 @@
 #include <regex>
 
 #include <fmt/format.h>
+#include <kainjow/mustache.hpp>
 
 namespace hshfit::embedded {
 extern const std::string_view live_css, page_css;
@@ -17,6 +18,12 @@ namespace hshfit::inline pages {
 std::string fileContent(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string commandMarkup(const std::string& command) {
+    const std::string text = kainjow::mustache::html_escape(command);
+    return std::regex_replace(text, std::regex(R"((^| )(--[^ ]+))"),
+                              "$1<span class=\"option\">$2</span>");
 }
 
 namespace {

@@ -21,6 +21,9 @@ std::string inlinedFigure(std::string svg, std::size_t index,
 /// "gnuplot 5.4 patchlevel 4", from the SVG document; else "gnuplot".
 std::string plotterOf(const std::string& svg);
 
+/// A command line as markup in which no line ends between the hyphens of an option or behind them.
+std::string commandMarkup(const std::string& command);
+
 /// The style sheet of reports and comparisons.
 std::string_view pageStyle();
 

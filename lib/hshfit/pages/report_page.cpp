@@ -159,7 +159,7 @@ data entryData(const ReportEntry& entry, std::size_t index) {
     fields.set("needs", needs);
     const std::string below = shortCurves(entry);
     if (!below.empty()) fields.set("short", below);
-    if (!entry.better.empty()) fields.set("better", entry.better);
+    if (!entry.better.empty()) fields.set("better", commandMarkup(entry.better));
     fields.set("rows", everyOrder(entry));
     return fields;
 }

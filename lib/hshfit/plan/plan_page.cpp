@@ -47,7 +47,7 @@ data choiceRow(const std::string& label, const Choice& choice, std::optional<dou
     row.set("times", timesSmaller(choice.bytes));
     row.set("error", errorText(choice.error));
     if (flip) row.set("flip", fmt::format("{:.3f}", *flip));
-    row.set("command", commandOf(choice, file));
+    row.set("command", commandMarkup(commandOf(choice, file)));
     return row;
 }
 
@@ -83,7 +83,8 @@ data formulaRows(const MaterialPlan& plan, bool costs) {
         row.set("lost", formula.row.lost);
         if (costs) row.set("cycles", choice::cyclesText(formula.row.cost));
         const std::string command = choice::commandLineOf(formula.row);
-        row.set("madeBy", command.empty() ? withoutFolders(formula.row.made.spec) : command);
+        row.set("madeBy",
+                commandMarkup(command.empty() ? withoutFolders(formula.row.made.spec) : command));
         rows.push_back(row);
     }
     return rows;

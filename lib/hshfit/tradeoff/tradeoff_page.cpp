@@ -73,7 +73,7 @@ data frontRow(const Tradeoff& trade, std::size_t k) {
     }
     row.set("bands", textList(bands));
     row.set("metrics", textList(metrics));
-    row.set("command", commandOf(trade, k));
+    row.set("command", commandMarkup(commandOf(trade, k)));
     if (trade.costs) row.set("cycles", choice::cyclesText(form.cost));
     if (!form.steps.empty()) row.set("steps", stepsText(form));
     return row;
@@ -137,7 +137,8 @@ data formulaTableOf(const Tradeoff& trade) {
         row.set("lost", formula.lost);
         if (trade.costs) row.set("cycles", choice::cyclesText(formula.cost));
         const std::string command = choice::commandLineOf(formula);
-        row.set("command", command.empty() ? withoutFolders(formula.made.spec) : command);
+        row.set("command",
+                commandMarkup(command.empty() ? withoutFolders(formula.made.spec) : command));
         rows.push_back(row);
     }
     data table;
@@ -191,7 +192,7 @@ data timeRows(const Tradeoff& trade, const std::vector<std::size_t>& front) {
         row.set("bytes", std::to_string(trade.forms[k].bytes));
         row.set("projection", fmt::format("{:.3f} s", time.projectionSeconds));
         row.set("derivation", fmt::format("{:.2f} ms", 1e3 * time.derivationSeconds));
-        row.set("command", commandOf(trade, k));
+        row.set("command", commandMarkup(commandOf(trade, k)));
         rows.push_back(row);
     }
     return rows;
@@ -218,7 +219,7 @@ data shaderTable(const Tradeoff& trade) {
                             : shader->reason);
         row.set("error", numberText(trade.errorOf(shader->form)));
         row.set("bytes", std::to_string(trade.forms[shader->form].bytes));
-        row.set("command", commandOf(trade, shader->form));
+        row.set("command", commandMarkup(commandOf(trade, shader->form)));
         rows.push_back(row);
     }
     table.set("rows", rows);

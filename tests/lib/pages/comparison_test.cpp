@@ -61,6 +61,12 @@ std::set<std::string> entries(const std::string& folder) {
     return names;
 }
 
+TEST(Pages, OptionsOfCommandsKeepTheirHyphens) {
+    EXPECT_EQ(commandMarkup("hshfit project 'a<b' --form basis -o x--y.json --force"),
+              "hshfit project &apos;a&lt;b&apos; <span class=\"option\">--form</span> basis -o "
+              "x--y.json <span class=\"option\">--force</span>");
+}
+
 TEST(Comparison, CurvesAndMapsAreTheFormulas) {
     const Comparison c = makeComparison(reference(), scaled(1.5), small());
     ASSERT_EQ(c.polar.size(), 4u);
